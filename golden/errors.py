@@ -1,0 +1,15 @@
+"""The one exception a user's mistake ends in."""
+
+from __future__ import annotations
+
+
+class InputError(ValueError):
+    """A mistake in what the user gave: ``str(error)`` is the one line to print, without a traceback.
+
+    A message starts with the name of what is wrong, ``k must be a positive number, not -1``, so that whoever
+    knows where that name stands in the user's file can put the path before it with `under`.
+    """
+
+    def under(self, path: str) -> InputError:
+        """The same error with `path` before it: under ``materials.gel`` it is ``materials.gel.k must be ...``."""
+        return InputError(f"{path}.{self}")

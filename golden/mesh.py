@@ -1,0 +1,149 @@
+"""Meshes of triangles (2-D) or tetrahedra (3-D): checked, with every edge once, from grids and files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from math import factorial, isfinite
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from golden import grids, meshfile
+from golden.errors import InputError
+
+FLAT = 1e-12  # a cell smaller than this part of its longest edge to the power of dim has no area or volume
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Points (N, dim) in m, cells (M, dim + 1) and edges (E, 2) of node indices, each edge once with i < j,
+    in order.
+
+    The nodes keep the order they were given in. Raises `InputError` when a point or an edge cannot belong to
+    an object. Build one with `from_cells`, `rectangle`, `box` or `read`.
+    """
+
+    points: np.ndarray
+    cells: np.ndarray
+    edges: np.ndarray
+
+    def __post_init__(self):
+        n = len(self.points)
+        if self.dim not in (2, 3) or not np.isfinite(self.points).all():
+            raise InputError("points must be finite coordinates in 2 or 3 dimensions")
+        _check_indices("edges", self.edges, n)
+        i, j = self.edges.T
+        if (i >= j).any() or (np.diff(i * n + j) <= 0).any():
+            raise InputError("edges must be pairs i < j in ascending order, each given once")
+        isolated = np.setdiff1d(np.arange(n), self.edges)
+        if len(isolated):
+            raise InputError(f"points must all belong to a cell, but point {isolated[0]} does not: remove it "
+                             f"({len(isolated)} of {n} are isolated)")
+        if pair := _duplicate(self.points):
+            raise InputError(f"points must all differ, but points {pair[0]} and {pair[1]} are at the same place: "
+                             "merge them (an edge of zero length has no direction)")
+
+    @property
+    def dim(self) -> int:
+        return self.points.shape[1]
+
+    @property
+    def size(self) -> float:
+        """Largest extent of the bounding box (m)."""
+        return float(np.ptp(self.points, axis=0).max())
+
+    def measure(self) -> np.ndarray:
+        """(M,) area (m^2) or volume (m^3) of each cell."""
+        return np.abs(_signed_measure(self.points[self.cells]))
+
+    def lumped_mass(self, density) -> np.ndarray:
+        """(N,) kg: each cell's mass shared equally by its nodes, from one density or (M,), in kg/m^2 or kg/m^3."""
+        corners = self.cells.shape[1]
+        share = np.repeat(density * self.measure() / corners, corners)
+        return np.bincount(self.cells.ravel(), share, len(self.points))
+
+    def components(self) -> tuple[int, np.ndarray]:
+        """Number of parts that no edge joins, and (N,) the part each node belongs to, counted from 0."""
+        n = len(self.points)
+        adjacency = coo_array((np.ones(len(self.edges)), tuple(self.edges.T)), shape=(n, n))
+        return connected_components(adjacency, directed=False)
+
+
+def from_cells(points, cells) -> Mesh:
+    """Mesh of the given triangles or tetrahedra; those of negative orientation are reordered.
+
+    Raises `InputError` for a node index out of range, a cell given twice or without area or volume, and as
+    `Mesh` does.
+    """
+    points, cells = np.array(points, dtype=float), np.array(cells, dtype=np.int64)
+    _check_indices("cells", cells, len(points))
+    if pair := _duplicate(np.sort(cells, axis=1)):
+        raise InputError(f"cells must all differ, but cells {pair[0]} and {pair[1]} have the same nodes: "
+                         "remove one")
+    pairs = list(combinations(range(cells.shape[1]), 2))
+    corners = points[cells]
+    longest = np.max([np.linalg.norm(corners[:, b] - corners[:, a], axis=1) for a, b in pairs], axis=0)
+    signed = _signed_measure(corners)
+    for cell in np.flatnonzero(np.abs(signed) <= FLAT * longest ** points.shape[1]):
+        measure = "an area" if points.shape[1] == 2 else "a volume"
+        raise InputError(f"cells must have {measure}, but cell {cell} of the points {cells[cell].tolist()} has none")
+    cells[signed < 0, -2:] = cells[signed < 0, :-3:-1]
+    edges = np.sort(np.concatenate([cells[:, pair] for pair in pairs]), axis=1)
+    return Mesh(points, cells, np.unique(edges, axis=0))
+
+
+def rectangle(nodes, size) -> Mesh:
+    """Grid of (nx, ny) nodes on [0, width] x [0, height] (m), x fastest; the diagonals alternate like a
+    chessboard.
+
+    Raises `InputError` for fewer than 2 nodes a side or a size that is not positive.
+    """
+    return from_cells(*grids.rectangle(nodes, size))
+
+
+def box(nodes, size, tetrahedra: int = 5) -> Mesh:
+    """Grid of (nx, ny, nz) nodes on [0, x] x [0, y] x [0, z] (m), x fastest, each cell cut into 5 or 6
+    tetrahedra.
+
+    Five: one in the middle and four at the corners, neighbours mirrored so that their faces match. Six:
+    around the same diagonal in every cell. Raises `InputError` as `rectangle` does, and for another number of
+    tetrahedra.
+    """
+    return from_cells(*grids.box(nodes, size, tetrahedra))
+
+
+def read(path, scale: float = 1.0) -> Mesh:
+    """Mesh of the triangles or the tetrahedra in a file of any format meshio reads, coordinates times `scale`
+    (to m).
+
+    Beside tetrahedra their boundary (triangles, lines, vertices, as Gmsh writes) is passed over, and so are
+    the lines and vertices beside triangles, which must lie in one plane of constant z. Raises `InputError`
+    for a file that is missing, unreadable or holds anything else, and as `from_cells` does.
+    """
+    if type(scale) not in (int, float) or not isfinite(scale) or scale <= 0:
+        raise InputError(f"scale must be a finite number above 0, not {scale!r}")
+    points, cells = meshfile.read(path)
+    return from_cells(points * scale, cells)
+
+
+def _signed_measure(corners: np.ndarray) -> np.ndarray:
+    """(M,) area or volume of cells whose corners are (M, dim + 1, dim), negative where the orientation is."""
+    sides = corners[:, 1:] - corners[:, :1]
+    return np.linalg.det(sides) / factorial(sides.shape[1])
+
+
+def _check_indices(name: str, indices: np.ndarray, n: int) -> None:
+    if indices.size == 0:
+        raise InputError(f"{name} must not be empty")
+    outside = indices[(indices < 0) | (indices >= n)]
+    if outside.size:
+        raise InputError(f"{name} must be made of the points 0 to {n - 1}, not {outside[0]}")
+
+
+def _duplicate(rows: np.ndarray) -> tuple[int, int] | None:
+    """Indices of two equal rows, if there are any."""
+    order = np.lexsort(rows.T)
+    same = np.flatnonzero((rows[order[1:]] == rows[order[:-1]]).all(axis=1))
+    return (int(order[same[0]]), int(order[same[0] + 1])) if len(same) else None

@@ -1,0 +1,72 @@
+"""What is to be simulated, fully resolved: an object, its materials and what is done to it. SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from golden.materials import Material
+from golden.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Phase:
+    """A stretch of time with one set of constraints and loads, for N nodes in `dim` dimensions.
+
+    At its start fixed nodes get velocity 0 and driven nodes their prescribed one; a node that is released
+    keeps the velocity it had. No node is both fixed and driven.
+    """
+
+    name: str
+    steps: int
+    fixed: np.ndarray  # (N,) bool
+    velocity: np.ndarray  # (N, dim) m/s, of the driven nodes
+    driven: np.ndarray  # (N,) bool
+    load: np.ndarray  # (N, dim) N, external force on each node
+
+    @property
+    def held(self) -> np.ndarray:
+        """(N,) bool: nodes whose motion is prescribed, fixed or driven."""
+        return self.fixed | self.driven
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """An object and what happens to it. `golden.scene.load` makes one from a file."""
+
+    name: str
+    description: str
+    path: Path | None  # the file it came from
+    mesh: Mesh  # N nodes, E edges
+    materials: tuple[Material, ...]
+    edge_material: np.ndarray  # (E,) int, index into materials
+    mass: np.ndarray  # (N,) kg
+    gravity: np.ndarray  # (dim,) m/s^2
+    dt: float  # s
+    phases: tuple[Phase, ...]
+    frames: np.ndarray  # (F,) int, steps to keep: strictly increasing, with 0 and the end of every phase
+
+    @property
+    def dim(self) -> int:
+        return self.mesh.dim
+
+    @property
+    def size(self) -> float:
+        """Largest extent of the initial object (m)."""
+        return self.mesh.size
+
+    @property
+    def steps(self) -> int:
+        return sum(phase.steps for phase in self.phases)
+
+    @property
+    def force_dependent(self) -> bool:
+        """Whether any edge has a damper whose coefficient depends on the force."""
+        return any(not self.materials[m].linear for m in np.unique(self.edge_material))
+
+    def per_edge(self, parameter: str) -> np.ndarray:
+        """(E,) values of a `Material` parameter."""
+        values = np.array([getattr(material, parameter) for material in self.materials], dtype=float)
+        return values[self.edge_material]
