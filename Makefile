@@ -1,0 +1,45 @@
+# Every target runs in the checkout's own virtual environment; environment.py sets it up, once.
+PYTHON ?= python3
+JOBS ?= 2
+
+# This make's flags must not reach the makes that Verilator and cocotb start.
+run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
+lanes := $(if $(LANES),--lanes $(LANES))
+capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES))
+
+.DEFAULT_GOAL := compare
+.NOTPARALLEL:
+.PHONY: compare verilog test verify lint lock help clean distclean environment
+
+compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on float64, integers and simulated circuit
+	@$(run) -m sim compare scenes/*.toml $(lanes) --out build/report
+	@echo "report: build/report/index.html, figures: build/report/compare.json"
+
+verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES= and EDGES= choose its size
+	@$(run) -m hw verilog $(lanes) $(capacities) --out build/verilog
+
+test: environment ## run the tests
+	@$(run) -m pytest -n $(JOBS) --dist loadgroup --durations 10 -m "not campaign"
+
+verify: environment ## run the tests and the long campaigns behind the published figures
+	@$(run) -m pytest -n $(JOBS) --dist loadgroup --durations 10
+
+lint: environment ## check the style of all Python files
+	@$(run) -m ruff check --quiet .
+
+lock: ## resolve the pins of pyproject.toml again and write requirements.lock
+	@$(PYTHON) environment.py --lock
+
+help: ## print this list
+	@sed -n 's/^\([a-z]*\):.*## /make \1 /p' $(firstword $(MAKEFILE_LIST)) | awk '{ printf "%-14s", $$1 " " $$2; $$1 = $$2 = ""; print }'
+
+clean: ## remove everything that was built, but not the virtual environment
+	@rm -rf build .hypothesis .pytest_cache .ruff_cache
+	@find . -name .venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
+
+distclean: clean ## remove the virtual environment as well
+	@rm -rf .venv
+
+environment:
+	@command -v $(PYTHON) >/dev/null || { echo "error: $(PYTHON) is missing: install Python 3.11 or newer" >&2; exit 2; }
+	@$(PYTHON) environment.py

@@ -1,0 +1,113 @@
+"""The checkout's virtual environment: names what pip can't bring, then installs requirements.lock, once.
+
+    python3 environment.py           what the Makefile's targets start with
+    python3 environment.py --lock    resolves the pins of pyproject.toml again and writes requirements.lock
+
+Standard library only, no syntax newer than Python 3.6: an old `python3` must reach the line that refuses it.
+"""
+import ctypes
+import ctypes.util
+import fcntl
+import hashlib
+import importlib.util
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent
+OLDEST = (3, 11)
+VERSION = "{}.{}".format(*sys.version_info)
+# program -> (what it is, Debian's package)
+PROGRAMS = {"c++": ("a C++ compiler (c++)", "g++"), "make": ("make", "make"), "perl": ("perl", "perl")}
+
+
+def libpython():
+    """Whether this Python's shared library can be loaded: cocotb embeds the interpreter in the simulator."""
+    name = sysconfig.get_config_var("INSTSONAME") or ""
+    architecture = sysconfig.get_config_var("MULTIARCH") or ""
+    folders = [pathlib.Path(sysconfig.get_config_var("LIBDIR") or "/"), pathlib.Path(sys.base_prefix, "lib")]
+    candidates = [str(folder / part / name) for folder in folders for part in ("", architecture)]
+    for candidate in [*candidates, ctypes.util.find_library("python" + VERSION)]:
+        try:
+            if candidate:
+                ctypes.CDLL(candidate)
+                return True
+        except OSError:
+            continue
+    return False
+
+
+def missing():
+    """One line for each thing the machine lacks and pip can't bring, with what to install."""
+    if sys.version_info < OLDEST:
+        return [f"python3 must be Python {OLDEST[0]}.{OLDEST[1]} or newer, not {VERSION}: install one, "
+                "or name the one to use: make PYTHON=python3.12"]
+    lacking = [entry for program, entry in PROGRAMS.items() if not shutil.which(program)]
+    if not (importlib.util.find_spec("venv") and importlib.util.find_spec("ensurepip")):
+        lacking.append(("Python's venv module", f"python{VERSION}-venv"))
+    if not libpython():
+        lacking.append((f"the shared library of Python {VERSION}", f"libpython{VERSION}"))
+    return [f"{what} is missing: install it (Debian: apt install {package})" for what, package in lacking]
+
+
+def run(*command):
+    subprocess.run([str(word) for word in command], check=True)
+
+
+def pip(python):
+    return python, "-m", "pip", "install", "-qq", "--disable-pip-version-check", "--no-input"
+
+
+def install(root=ROOT):
+    """Make root/.venv agree with root/requirements.lock and this Python; do nothing when it already does.
+
+    The stamp is written last, so an interrupted installation is started again from nothing.
+    """
+    lock, venv = root / "requirements.lock", root / ".venv"
+    stamp, python = venv / "installed", venv / "bin" / "python"
+    with lock.open("rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)  # two makes at once: the second waits and finds everything done
+        wanted = f"{hashlib.sha256(file.read()).hexdigest()} {sys.base_prefix} {sys.version}\n"
+        if python.exists() and stamp.exists() and stamp.read_text() == wanted:
+            return
+        print("setting up .venv from requirements.lock ...", flush=True)
+        run(sys.executable, "-m", "venv", "--clear", venv)
+        run(*pip(python), "--no-deps", "-r", lock)
+        stamp.write_text(wanted)
+
+
+def resolve(root=ROOT):
+    """Write root/requirements.lock: the pins of root/pyproject.toml and all that they need."""
+    import tomllib
+
+    direct = tomllib.loads((root / "pyproject.toml").read_text())["project"]["dependencies"]
+    with tempfile.TemporaryDirectory() as folder:
+        report = pathlib.Path(folder, "report.json")
+        run(*pip(sys.executable), "--dry-run", "--ignore-installed", "--report", report, *direct)
+        found = [item["metadata"] for item in json.loads(report.read_text())["install"]]
+    pins = sorted(f"{item['name'].lower().replace('_', '-')}=={item['version']}\n" for item in found)
+    head = "# Everything that is installed, exactly: written by `make lock` from the pins of pyproject.toml\n"
+    (root / "requirements.lock").write_text(head + "".join(pins))
+
+
+def main(arguments):
+    """Exit code: 0, or 2 when something is missing or an installation fails."""
+    lines = missing()
+    for line in lines:
+        print("error: " + line, file=sys.stderr)
+    if lines:
+        return 2
+    try:
+        resolve() if "--lock" in arguments else install()
+    except subprocess.CalledProcessError:
+        print("error: the installation failed, the lines above say why", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

