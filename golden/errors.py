@@ -11,5 +11,5 @@ class InputError(ValueError):
     """
 
     def under(self, path: str) -> InputError:
-        """The same error with `path` before it: under ``materials.gel`` it is ``materials.gel.k must be ...``."""
+        """The same error, `path` before it: under ``materials.gel`` it is ``materials.gel.k must be ...``."""
         return InputError(f"{path}.{self}")

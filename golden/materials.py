@@ -47,7 +47,7 @@ class Material:
 
 
 def decay(c_max, c_min, f1, f2):
-    """B of equation (7), 1/N: what continuity at f1 and f2 asks for. A = c_max exp(B f1) overflows; nobody needs it."""
+    """B of equation (7) in 1/N, from continuity at f1 and f2. (A = c_max exp(B f1) overflows: not used.)"""
     return np.log(c_max / c_min) / (f2 - f1)
 
 
@@ -70,27 +70,21 @@ def solve_damper(c1, c_max, c_min, f1, f2, g) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _middle_branch(c1, c_max, c_min, f1, f2, size) -> np.ndarray:
-    """c2 between g1 and g2, by Newton's method on the logarithm of |f| (1 + c1 / c2(|f|)) = |g|, bracketed by
-    f1 and f2.
+    """c2 between g1 and g2: Newton's method on ln(|f| (1 + c1 / c2(|f|))) = ln |g| with ln |f| as the
+    unknown.
 
-    The logarithm turns the exponential into a straight line: a few iterations do where c1 is large. A step
-    that leaves the bracket is replaced by its midpoint.
+    The left side is convex and rises, and the iteration starts above the root: it comes down to it and never
+    passes it, so nothing needs to be bracketed.
     """
-    b = decay(c_max, c_min, f1, f2)
-    low, high = f1, np.minimum(f2, size / (1 + c1 / c_max))
-    f = (low + high) / 2
-    for _ in range(100):
-        stiff = c1 / c_max * np.exp(b * (f - f1))  # c1 / c2
-        residual = np.log(f * (1 + stiff) / size)
-        low = np.where(residual < 0, f, low)
-        high = np.where(residual < 0, high, f)
-        step = f - residual / (1 / f + b * stiff / (1 + stiff))
-        step = np.where((step < low) | (step > high), (low + high) / 2, step)
-        done = np.abs(step - f) <= 4 * np.finfo(float).eps * f2
-        f = step
-        if done.all():
-            break
-    return c_max * np.exp(-b * (f - f1))
+    b, stiff = decay(c_max, c_min, f1, f2), c1 / c_max
+    f = np.minimum(f2, size / (1 + stiff))
+    while True:
+        ratio = stiff * np.exp(b * (f - f1))  # c1 / c2
+        slope = 1 + ratio / (1 + ratio) * b * f
+        step = np.log(f * (1 + ratio) / size) / slope
+        f = f * np.exp(-step)
+        if not (np.abs(step * slope) > 1e-8).any():  # its square is beyond float64
+            return c_max * np.exp(-b * (f - f1))
 
 
 def viscoelastic(name: str, k: float, c1: float) -> Material:

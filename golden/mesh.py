@@ -42,7 +42,7 @@ class Mesh:
             raise InputError(f"points must all belong to a cell, but point {isolated[0]} does not: remove it "
                              f"({len(isolated)} of {n} are isolated)")
         if pair := _duplicate(self.points):
-            raise InputError(f"points must all differ, but points {pair[0]} and {pair[1]} are at the same place: "
+            raise InputError(f"points must all differ, but {pair[0]} and {pair[1]} are at the same place: "
                              "merge them (an edge of zero length has no direction)")
 
     @property
@@ -59,7 +59,7 @@ class Mesh:
         return np.abs(_signed_measure(self.points[self.cells]))
 
     def lumped_mass(self, density) -> np.ndarray:
-        """(N,) kg: each cell's mass shared equally by its nodes, from one density or (M,), in kg/m^2 or kg/m^3."""
+        """(N,) kg: each cell's mass shared by its nodes; `density`, one or (M,), in kg/m^2 or kg/m^3."""
         corners = self.cells.shape[1]
         share = np.repeat(density * self.measure() / corners, corners)
         return np.bincount(self.cells.ravel(), share, len(self.points))
@@ -88,7 +88,7 @@ def from_cells(points, cells) -> Mesh:
     signed = _signed_measure(corners)
     for cell in np.flatnonzero(np.abs(signed) <= FLAT * longest ** points.shape[1]):
         measure = "an area" if points.shape[1] == 2 else "a volume"
-        raise InputError(f"cells must have {measure}, but cell {cell} of the points {cells[cell].tolist()} has none")
+        raise InputError(f"cells must all have {measure}, unlike cell {cell} (points {cells[cell].tolist()})")
     cells[signed < 0, -2:] = cells[signed < 0, :-3:-1]
     edges = np.sort(np.concatenate([cells[:, pair] for pair in pairs]), axis=1)
     return Mesh(points, cells, np.unique(edges, axis=0))
