@@ -1,0 +1,89 @@
+"""Which element, and so which edge, has which material."""
+
+from __future__ import annotations
+
+from inspect import Parameter, signature
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from golden import schema
+from golden.errors import InputError
+from golden.materials import PRESETS, Material
+from golden.mesh import Mesh
+from golden.regions import Region, select_cells
+
+
+def assign(tables: dict[str, Any], mesh: Mesh) -> tuple[tuple[Material, ...], np.ndarray]:
+    """Materials in the file's order, and (E,) the index of each edge's material.
+
+    An edge between elements of different materials has the one that comes first in the file. Raises
+    `InputError` when a parameter is wrong or an element does not have exactly one material.
+    """
+    if not tables:
+        raise InputError("materials must hold at least one material, not none")
+    owner = np.full(len(mesh.cells), -1)
+    materials = []
+    for index, (name, table) in enumerate(tables.items()):
+        path = f"materials.{name}"
+        materials.append(_material(name, table, path))
+        cells = _cells(table, mesh, path, alone=len(tables) == 1)
+        if (taken := np.flatnonzero(cells & (owner >= 0))).size:
+            other = materials[owner[taken[0]]].name
+            raise InputError(f"{path}.region must not overlap materials.{other}.region: both hold "
+                             f"{_at(mesh, taken)}")
+        owner[cells] = index
+    if (left := np.flatnonzero(owner < 0)).size:
+        raise InputError(f"materials must cover every element, but none holds {_at(mesh, left)}")
+    return tuple(materials), _per_edge(owner, mesh)
+
+
+def _material(name: str, table: Any, path: str) -> Material:
+    if not isinstance(table, dict):
+        raise InputError(f"{path} must be a table, not {schema.shown(table)}")
+    if "preset" not in table:
+        raise InputError(f"{path}.preset must be given: one of {', '.join(PRESETS)}")
+    if table["preset"] not in tuple(PRESETS):
+        raise InputError(f"{path}.preset must be one of {', '.join(PRESETS)}, "
+                         f"not {schema.shown(table['preset'])}")
+    preset = PRESETS[table["preset"]]
+    expected = dict(list(signature(preset).parameters.items())[1:])  # after the name
+    given = {key: value for key, value in table.items() if key not in ("preset", "region")}
+    for key in given:
+        if key not in expected:
+            raise schema.unknown_key(f"{path}.{key}", ["preset", "region", *expected])
+    for key, parameter in expected.items():
+        if parameter.default is Parameter.empty and key not in given:
+            raise InputError(f"{path}.{key} must be given")
+    try:
+        return preset(name, **given)
+    except InputError as error:
+        raise error.under(path) from None
+
+
+def _cells(table: dict[str, Any], mesh: Mesh, path: str, alone: bool) -> np.ndarray:
+    """(M,) bool: the elements of one material; the only material of an object may leave its region out."""
+    if "region" in table:
+        region = schema.convert(table["region"], Region, f"{path}.region")
+        return select_cells(region, mesh, f"{path}.region")
+    if not alone:
+        raise InputError(f"{path}.region must be given, as there are several materials")
+    return np.ones(len(mesh.cells), dtype=bool)
+
+
+def _per_edge(owner: np.ndarray, mesh: Mesh) -> np.ndarray:
+    """(E,) the smallest index of a material among the elements around each edge."""
+    count, first = len(mesh.points), np.full(len(mesh.edges), np.iinfo(np.int64).max)
+    number = mesh.edges @ [count, 1]  # ascending, because the edges are in order
+    for pair in combinations(range(mesh.cells.shape[1]), 2):
+        ends = np.sort(mesh.cells[:, pair], axis=1)
+        np.minimum.at(first, np.searchsorted(number, ends @ [count, 1]), owner)
+    return first
+
+
+def _at(mesh: Mesh, cells: np.ndarray) -> str:
+    """The first of some elements in words."""
+    place = ", ".join(f"{x:.6g}" for x in mesh.points[mesh.cells[cells[0]]].mean(axis=0))
+    more = f" and {len(cells) - 1} more" if len(cells) > 1 else ""
+    return f"element {cells[0]} around [{place}]{more}"
