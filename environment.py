@@ -76,7 +76,7 @@ def install(root=ROOT):
             return
         print("setting up .venv from requirements.lock ...", flush=True)
         run(sys.executable, "-m", "venv", "--clear", venv)
-        run(*pip(python), "--no-deps", "-r", lock)
+        run(*pip(python), "--no-deps", "--no-compile", "-r", lock)
         stamp.write_text(wanted)
 
 
