@@ -42,8 +42,9 @@ class Material:
         size = np.abs(np.asarray(f, dtype=float))
         if self.linear:
             return np.full_like(size, self.c_max)
-        middle = self.c_max * np.exp(-decay(self.c_max, self.c_min, self.f1, self.f2) * (size - self.f1))
-        return np.where(size <= self.f1, self.c_max, np.where(size >= self.f2, self.c_min, middle))
+        beyond = np.clip(size, self.f1, self.f2) - self.f1
+        falling = self.c_max * np.exp(-decay(self.c_max, self.c_min, self.f1, self.f2) * beyond)
+        return np.where(size < self.f2, falling, self.c_min)
 
 
 def decay(c_max, c_min, f1, f2):

@@ -31,8 +31,7 @@ class Mesh:
 
     def __post_init__(self):
         n = len(self.points)
-        if self.dim not in (2, 3) or not np.isfinite(self.points).all():
-            raise InputError("points must be finite coordinates in 2 or 3 dimensions")
+        _check_points(self.points)
         _check_indices("edges", self.edges, n)
         i, j = self.edges.T
         if (i >= j).any() or (np.diff(i * n + j) <= 0).any():
@@ -78,6 +77,7 @@ def from_cells(points, cells) -> Mesh:
     `Mesh` does.
     """
     points, cells = np.array(points, dtype=float), np.array(cells, dtype=np.int64)
+    _check_points(points)
     _check_indices("cells", cells, len(points))
     if pair := _duplicate(np.sort(cells, axis=1)):
         raise InputError(f"cells must all differ, but cells {pair[0]} and {pair[1]} have the same nodes: "
@@ -132,6 +132,11 @@ def _signed_measure(corners: np.ndarray) -> np.ndarray:
     """(M,) area or volume of cells whose corners are (M, dim + 1, dim), negative where the orientation is."""
     sides = corners[:, 1:] - corners[:, :1]
     return np.linalg.det(sides) / factorial(sides.shape[1])
+
+
+def _check_points(points: np.ndarray) -> None:
+    if points.ndim != 2 or points.shape[1] not in (2, 3) or not np.isfinite(points).all():
+        raise InputError("points must be finite coordinates in 2 or 3 dimensions")
 
 
 def _check_indices(name: str, indices: np.ndarray, n: int) -> None:
