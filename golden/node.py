@@ -1,0 +1,49 @@
+"""The datapath of a node: Newton's law and one Runge-Kutta stage, over any number type (`golden.qarray`)."""
+
+from .block import normalise
+from .rk4 import rk4
+
+
+def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
+    """One Runge-Kutta stage of one node.
+
+    Parameters
+    ----------
+    fmt, stage, velocity_shift
+        As for `golden.edge.edge`.
+    pulls
+        Vectors: the sums of edge forces, one for each accumulator.
+    load
+        Vector: gravity and external force.
+    inverse_mass
+        Mantissa ``value`` and ``shift`` of m_ref / m; a node that is fixed or driven has 0.
+    state
+        Vectors ``x_base``, ``v_base`` at the start of the step, ``v`` of this stage, ``x_total``, ``v_total`` of the
+        slopes so far.
+
+    Returns
+    -------
+    dict
+        Every named quantity below. The outputs are ``force``, ``x``, ``v`` (for the next stage), ``x_base_next``,
+        ``v_base_next``, ``x_total`` and ``v_total``.
+    """
+    force = [sum(component[1:], component[0]).to(fmt.accumulator) for component in zip(*pulls, load, strict=True)]
+    unit = [c.scale(1 - fmt.accumulator.int_bits) for c in force]
+    mantissa, shift = normalise(unit, fmt.operand)
+    acceleration = [
+        (inverse_mass.value * c).to(fmt.velocity, right=shift + inverse_mass.shift) for c in mantissa
+    ]
+    displacement = [c.to(fmt.displacement, right=velocity_shift) for c in state.v]
+
+    x, x_base_next, x_total = advance(stage, state.x_base, state.x_total, displacement, fmt.position, fmt.displacement)
+    v, v_base_next, v_total = advance(stage, state.v_base, state.v_total, acceleration, fmt.velocity, fmt.velocity)
+    return locals()
+
+
+def advance(stage, base, total, slope, value_format, total_format):
+    """`golden.rk4.rk4` for a vector: (value, base, total) of the next stage."""
+    steps = [rk4(stage, *component) for component in zip(base, total, slope, strict=True)]
+    totals = [total.to(total_format) for total, _ in steps]
+    values = [value.to(value_format) for _, value in steps]
+    bases = [stage.last.select(value, start) for value, start in zip(values, base, strict=True)]
+    return values, bases, totals

@@ -1,0 +1,103 @@
+"""The contents of the datapath's tables: 1 / sqrt(q), and sigma and rho over |g| for a force-dependent damper.
+
+Each segment is a straight line through the middle of the band between chord and curve, so that its error is half of
+the chord's.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+
+from . import records
+from .formats import Formats
+
+
+def _lines(curve: Callable, start: np.ndarray, end: np.ndarray):
+    """Value at the start of each segment and change over it, in float64."""
+    first, last, middle = curve(start), curve(end), curve((start + end) / 2)
+    return first + (middle - (first + last) / 2) / 2, last - first
+
+
+def _raw(x, q):
+    return np.clip(np.floor(np.ldexp(x, q.frac_bits) + 0.5), q.raw_min, q.raw_max).astype(np.int64)
+
+
+def inverse_table(fmt: Formats) -> dict[str, np.ndarray]:
+    """1 / sqrt(q) on [1, 4) by the leading bits of q. Below 1, where no normalised q is, the value of 1."""
+    entries = 1 << fmt.inverse_index.width
+    q = np.maximum(np.arange(entries) * 4.0 / entries, 1.0)
+    value, change = _lines(lambda q: q**-0.5, q, q + 4.0 / entries)
+    change[: entries // 4] = 0
+    return {"value": _raw(value, fmt.inverse_value), "slope": _raw(-change, fmt.inverse_slope)}
+
+
+@dataclass(frozen=True)
+class DamperTable:
+    """Segments of one material: where they start on the octave axis, by what power of two
+    they are longer than the finest, and their words."""
+
+    first_octave: int  # raw
+    coarseness: int
+    words: dict[str, np.ndarray]
+
+
+def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Callable) -> DamperTable:
+    """The middle branch of (7) for g1 <= |g| <= g2 < 2, in units of the trial force's full scale.
+
+    ``rho`` and ``sigma`` are smooth functions of |g| in those units, continued past both ends.
+
+    Raises
+    ------
+    ValueError
+        If the branch starts below the octaves that the datapath normalises.
+    """
+    lowest = 2.0 ** (1 - fmt.trial_octaves)
+    if g1 < lowest:
+        raise ValueError(f"g1 must be at least {lowest:g} of the trial force's full scale, not {g1:g}")
+    first, last = (octave(g / lowest) for g in (g1, g2))
+    segments = 1 << fmt.damper_index.width
+    finest = fmt.octave.frac_bits
+    per_octave = next(2**p for p in range(finest, -1, -1) if int(last * 2**p) - int(first * 2**p) < segments)
+    start = np.floor(first * per_octave) / per_octave
+    places = start + np.arange(segments + 1) / per_octave
+    g = lowest * octave_inverse(places)
+    words = {}
+    for name, curve, sign in (("rho", rho, -1), ("sigma", sigma, 1)):
+        value, change = _lines(curve, g[:-1], g[1:])
+        shift = np.clip(-np.frexp(np.maximum(value, value + change))[1], 0, fmt.damper_shift.raw_max)
+        words[f"{name}_value"] = _raw(np.ldexp(value, shift), fmt.damper_value)
+        words[f"{name}_slope"] = _raw(np.ldexp(sign * change, shift), fmt.damper_slope)
+        words[f"{name}_shift"] = shift.astype(np.int64)
+    return DamperTable(int(start * 2**finest), finest - (per_octave.bit_length() - 1), words)
+
+
+def octave(x):
+    """The logarithm that the circuit computes: exponent plus fraction of the mantissa, x >= 1."""
+    mantissa, exponent = np.frexp(x)
+    return exponent - 1 + (2 * mantissa - 1)
+
+
+def octave_inverse(place):
+    exponent = np.floor(place)
+    return np.ldexp(1 + place - exponent, exponent.astype(int))
+
+
+class Tables:
+    """The lookups of `golden.edge` on `golden.qarray` numbers."""
+
+    def __init__(self, fmt: Formats, inverse: dict[str, np.ndarray], damper: dict[str, np.ndarray]):
+        """``damper``: arrays of shape (tables, segments)."""
+        self._inverse, self._damper = inverse, damper
+        self._inverse_word, self._damper_word = records.inverse_word(fmt), records.damper_word(fmt)
+
+    @staticmethod
+    def _read(contents, word, like, *index):
+        return SimpleNamespace(**{name: type(like)(contents[name][index], q, like.faults) for name, q in word.items()})
+
+    def inverse(self, index):
+        return self._read(self._inverse, self._inverse_word, index, index.raw)
+
+    def damper(self, table, index):
+        return self._read(self._damper, self._damper_word, index, table.raw, index.raw)

@@ -1,0 +1,1 @@
+"""Co-simulation: scenes on the float64 model, the integer model and the simulated circuit, compared."""
