@@ -34,7 +34,7 @@ from golden.problem import Scene
 
 HALF_DISC = 2.6  # |R(z)| <= 1 for |z| <= this and Re z <= 0, R the growth of classical Runge-Kutta in a step
 TURNING = 0.8  # edges turn as the object deforms: pressed to half its height it got up to 1.27 times as fast
-DENSE = 200  # unknowns up to which all eigenvalues are as quick as one
+DENSE = 30  # unknowns up to which all eigenvalues are as quick as one
 
 
 def largest_dt(scene: Scene) -> tuple[float, str, str]:
