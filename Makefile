@@ -5,6 +5,8 @@ JOBS ?= 2
 # This make's flags must not reach the makes that Verilator and cocotb start.
 run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
 lanes := $(if $(LANES),--lanes $(LANES))
+# The tests of a file go to one worker: what they share is built once.
+pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
 capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES))
 
 .DEFAULT_GOAL := compare
@@ -19,10 +21,10 @@ verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES=
 	@$(run) -m hw verilog $(lanes) $(capacities) --out build/verilog
 
 test: environment ## run the tests
-	@$(run) -m pytest -n $(JOBS) --dist loadgroup --durations 10 -m "not campaign"
+	@$(pytest) -m "not campaign"
 
 verify: environment ## run the tests and the long campaigns behind the published figures
-	@$(run) -m pytest -n $(JOBS) --dist loadgroup --durations 10
+	@$(pytest)
 
 lint: environment ## check the style of all Python files
 	@$(run) -m ruff check --quiet .
