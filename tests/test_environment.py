@@ -1,5 +1,6 @@
 """environment.py: what is missing is named, nothing is installed twice, an interruption is made good."""
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -60,30 +61,54 @@ def test_shared_library_is_looked_for(monkeypatch):
     assert not environment.libpython()
 
 
-def test_installs_once(tmp_path, capfd):
-    lock, stamp = tmp_path / "requirements.lock", tmp_path / ".venv" / "installed"
-    witness = tmp_path / ".venv" / "witness"
+@pytest.fixture
+def checkout(tmp_path, monkeypatch):
+    """A checkout with an empty lock, and what would be run in it: a real installation is what ran this test."""
+    ran = []
 
-    def installs():
-        environment.install(tmp_path)
-        return bool(capfd.readouterr().out)
+    def run(*command):
+        ran.append(command[2])
+        if command[2] == "venv":
+            shutil.rmtree(tmp_path / ".venv", ignore_errors=True)  # --clear
+            (tmp_path / ".venv" / "bin").mkdir(parents=True)
+            (tmp_path / ".venv" / "bin" / "python").touch()
 
-    lock.write_text("")
-    assert installs() and not installs()
-    witness.touch()
-    stamp.unlink()  # what an interruption leaves behind
-    assert installs() and not witness.exists()
-    lock.write_text("# changed\n")
-    assert installs() and not installs()
+    (tmp_path / "requirements.lock").touch()
+    monkeypatch.setattr(environment, "run", run)
+    return tmp_path, ran
 
 
-def test_failed_installation(tmp_path, monkeypatch, capfd):
-    (tmp_path / "requirements.lock").write_text("not a pin\n")
-    monkeypatch.setattr(environment.install, "__defaults__", (tmp_path,))
+def test_installs_once(checkout):
+    root, ran = checkout
+    for _ in range(2):
+        environment.install(root)
+        assert ran == ["venv", "pip"]
+
+
+@pytest.mark.parametrize("disturb", [
+    lambda root: (root / ".venv" / "installed").unlink(),  # what an interruption leaves behind
+    lambda root: (root / ".venv" / "bin" / "python").unlink(),  # the Python it was made from has gone
+    lambda root: (root / "requirements.lock").write_text("numpy==2.4.6\n"),
+])
+def test_installs_again(checkout, disturb):
+    root, ran = checkout
+    environment.install(root)
+    disturb(root)
+    environment.install(root)
+    assert ran == ["venv", "pip"] * 2
+
+
+def test_failed_installation(checkout, monkeypatch, capfd):
+    root, _ = checkout
+
+    def fail(*command):
+        raise subprocess.CalledProcessError(1, command)
+
+    monkeypatch.setattr(environment, "run", fail)
+    monkeypatch.setattr(environment.install, "__defaults__", (root,))
     assert environment.main([]) == 2
-    assert capfd.readouterr().err.splitlines()[-1] == \
-        "error: the installation failed, the lines above say why"
-    assert not (tmp_path / ".venv" / "installed").exists()
+    assert capfd.readouterr().err == "error: the installation failed, the lines above say why\n"
+    assert not (root / ".venv" / "installed").exists()
 
 
 def pins(lines):
