@@ -25,8 +25,10 @@ class Node:
     detail: object = None
     name: str = ""
 
-    def _number(self, other) -> "Node":
-        return other if isinstance(other, Node) else self.graph.const(other)
+    def _number(self, other, beside=None) -> "Node":
+        if isinstance(other, Node):
+            return other
+        return self.graph.const(other, beside.fmt if other == 0 and isinstance(beside, Node) else smallest(other))
 
     def _make(self, kind, fmt, *operands, detail=None):
         return self.graph.add(kind, fmt, operands, detail)
@@ -54,7 +56,7 @@ class Node:
         return self._make("less", BIT, self, self._number(other))
 
     def select(self, yes, no):
-        yes, no = self._number(yes), self._number(no)
+        yes, no = self._number(yes, no), self._number(no, yes)
         return self._make("select", yes.fmt.union(no.fmt), self, yes, no)
 
     def scale(self, power):
@@ -99,8 +101,8 @@ class Graph:
         self.nodes.append(node)
         return node
 
-    def const(self, raw: int) -> Node:
-        return self.add("const", smallest(raw), detail=raw)
+    def const(self, raw: int, fmt: Q) -> Node:
+        return self.add("const", fmt, detail=raw)
 
     def input(self, name: str, fmt: Q) -> Node:
         self.inputs[name] = node = self.add("input", fmt, name=name)
@@ -121,12 +123,13 @@ class Graph:
     def finish(self, values: dict, outputs: list[str]):
         """Name the nodes after the variables that hold them, and keep what the outputs need.
 
-        ``values`` are a datapath's variables; a list is a vector, whose components get an axis as suffix.
+        ``values`` are a datapath's variables; a list is a vector, whose components get an axis as suffix. A variable
+        that is called like an input is its next value.
         """
         for name, value in values.items():
             for label, node in flatten(name, value):
                 if isinstance(node, Node) and not node.name:
-                    node.name = label
+                    node.name = f"{label}_next" if label in self.inputs else label
         self.outputs = {label: node for name in outputs for label, node in flatten(name, values[name])}
         needed = {id(node) for node in (*self.outputs.values(), *self.inputs.values())}
         needed |= {id(node) for _, node in self.faults}

@@ -41,6 +41,11 @@ class Machine:
         self.force = np.zeros_like(image.x)
         self.refresh()
 
+    def restart(self, v: np.ndarray):
+        """Go on with these velocities, and take up the image's changes."""
+        self.v = v
+        self.refresh()
+
     def refresh(self):
         """Take up changes of the image's materials, loads, masses and edges."""
         image, fmt = self.image, self._fmt

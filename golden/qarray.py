@@ -38,8 +38,11 @@ class QArray:
     def _new(self, raw, fmt):
         return QArray(raw, fmt, self.faults)
 
-    def _number(self, other) -> "QArray":
-        return other if isinstance(other, QArray) else self._new(np.int64(other), smallest(other))
+    def _number(self, other, beside=None) -> "QArray":
+        """``other``, or an integer in the smallest format that holds it; 0 takes no bits of its own ``beside`` one."""
+        if isinstance(other, QArray):
+            return other
+        return self._new(np.int64(other), beside.fmt if other == 0 and isinstance(beside, QArray) else smallest(other))
 
     def _aligned(self, other):
         left = self.fmt.frac_bits - other.fmt.frac_bits
@@ -74,7 +77,7 @@ class QArray:
 
     def select(self, yes, no):
         """``yes`` where this bit is 1, ``no`` where it is 0, in the format that holds both."""
-        yes, no = self._number(yes), self._number(no)
+        yes, no = self._number(yes, no), self._number(no, yes)
         a, b = yes._aligned(no)
         return self._new(np.where(self.raw, a, b), yes.fmt.union(no.fmt))
 
@@ -97,7 +100,8 @@ class QArray:
         fmt, magnitude = vector[0].fmt, 0
         for x in vector:
             magnitude = magnitude | (x.raw ^ x.raw >> 63)
-        length = np.frexp(magnitude.astype(float))[1].astype(np.int64)
+        leading = magnitude & ~(magnitude >> 1)  # its highest bit, and a next one of 0: float64 can't round it up
+        length = np.frexp(leading.astype(float))[1].astype(np.int64)
         return vector[0]._new(np.minimum(fmt.width - fmt.signed - length, most), count(most))
 
     def to(self, fmt: Q, *, left=None, right=None):

@@ -1,0 +1,104 @@
+"""The integer model compiled: `golden.machine` at the speed of C, made from the same equations."""
+
+import ctypes
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.ctypeslib import ndpointer
+
+from golden import records
+from golden.formats import Formats
+from golden.image import Image
+from golden.rk4 import RK4
+
+from .native_build import library
+from .native_source import sources
+
+PROGRAM = Path(__file__).with_suffix(".cpp")
+CHUNK = 1_000_000
+"""Edge evaluations between two chances to interrupt."""
+
+
+@cache
+def compiled(fmt: Formats, tables: int):
+    """The program ``run`` for these formats and room for ``tables`` damper tables, and the names of its faults."""
+    files, faults = sources(fmt, tables)
+    path = library(files | {PROGRAM.name: PROGRAM.read_text()}, PROGRAM.name)
+    run = ctypes.CDLL(str(path)).run
+    integers = ndpointer(np.int64, flags="C_CONTIGUOUS")
+    run.argtypes = [ctypes.c_int64] * 4 + [integers] * 13
+    run.restype = None
+    return run, faults
+
+
+class NativeMachine:
+    """The bit-exact model of the circuit, compiled: attributes and methods are those of `golden.machine.Machine`.
+
+    Raises
+    ------
+    InputError
+        If there is no C++ compiler.
+    IndexError
+        If the image names a node, a material or a table that it doesn't have.
+    """
+
+    def __init__(self, image: Image):
+        self.image, self.faults = image, Counter()
+        self.x, self.v, self.ratio = image.x.copy(), image.v.copy(), image.ratio.copy()
+        self.force = np.zeros_like(image.x)
+        self._run, self._fault_names = compiled(image.formats, len(image.damper["rho_value"]))
+        self._inverse = words(image.inverse, records.inverse_word(image.formats))
+        self._damper = words(image.damper, records.damper_word(image.formats))
+        self.refresh()
+
+    def restart(self, v: np.ndarray):
+        """Go on with these velocities, after changes of the image's materials, loads, masses or edges."""
+        self.v = v
+        self.refresh()
+
+    def refresh(self):
+        """Take up changes of the image's materials, loads, masses and edges."""
+        image, fmt = self.image, self.image.formats
+        tables = len(image.damper["rho_value"])
+        material = records.material(fmt, tables)
+        contents = {name: np.array([m[name] for m in image.materials]) for name in material}
+        for what, index, count in (
+            ("edges", image.edges, image.nodes),
+            ("edge_material", image.edge_material, len(image.materials)),
+            ("table", contents["table"], tables),
+        ):
+            if not np.all((index >= 0) & (index < count)):
+                raise IndexError(f"{what} must be 0 to {count - 1}, not {index.min()} to {index.max()}")
+        self._constant = [
+            integers(image.load),
+            words(image.inverse_mass, records.inverse_mass(fmt)),
+            integers(image.edges),
+            integers(image.edge_material),
+            integers(image.length),
+            words(contents, material),
+            self._inverse,
+            self._damper,
+        ]
+
+    def step(self, steps: int = 1):
+        self.x, self.v, self.ratio, self.force = state = [
+            np.array(s, np.int64, order="C") for s in (self.x, self.v, self.ratio, self.force)
+        ]
+        nodes, edges = len(self.x), len(self.ratio)
+        chunk = max(1, CHUNK // (RK4.stages * max(edges, 1)))
+        for done in range(0, steps, chunk):
+            counts = np.zeros(len(self._fault_names), np.int64)
+            size = nodes, edges, self.image.velocity_shift
+            self._run(min(chunk, steps - done), *size, *state, *self._constant, counts)
+            self.faults.update({name: int(n) for name, n in zip(self._fault_names, counts, strict=True) if n})
+
+
+def integers(x) -> np.ndarray:
+    return np.ascontiguousarray(x, np.int64)
+
+
+def words(contents, record) -> np.ndarray:
+    """The fields of each record side by side."""
+    return np.ascontiguousarray(np.stack([contents[name] for name in record], axis=-1), np.int64)
