@@ -95,7 +95,7 @@ def resolve(root=ROOT):
 
 
 def main(arguments):
-    """Exit code: 0, or 2 when something is missing or an installation fails."""
+    """Exit code: 0, 2 when something is missing or the installation fails, 130 when it is interrupted."""
     lines = missing()
     for line in lines:
         print("error: " + line, file=sys.stderr)
@@ -106,6 +106,8 @@ def main(arguments):
     except subprocess.CalledProcessError:
         print("error: the installation failed, the lines above say why", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        return 130
     return 0
 
 

@@ -122,7 +122,7 @@ def _frames(table: schema.Frames, phases: tuple[Phase, ...]) -> np.ndarray:
         raise InputError(f"frames must have one of every and count, not {given}")
     ends = np.cumsum([0] + [phase.steps for phase in phases])
     if table.every:
-        wanted = np.arange(0, ends[-1], table.every)
+        wanted = np.arange(0, ends[-1], min(table.every, ends[-1]))
     else:
-        wanted = np.round(np.linspace(0, ends[-1], table.count + 1)).astype(int)
+        wanted = np.round(np.linspace(0, ends[-1], min(table.count, ends[-1]) + 1)).astype(int)
     return np.union1d(wanted, ends)

@@ -33,9 +33,10 @@ def test_defaults(tmp_path):
 @pytest.mark.parametrize("frames, expected", [
     ("every = 30", [0, 30, 60, 90, 100, 120, 150]),
     ("every = 1000", [0, 100, 150]),
+    ("every = 1_000_000_000_000_000_000_000", [0, 100, 150]),
     ("count = 3", [0, 50, 100, 150]),
     ("count = 4", [0, 38, 75, 100, 112, 150]),
-    ("count = 1000", list(range(151))),
+    ("count = 1_000_000_000_000_000_000_000", list(range(151))),
 ])
 def test_frames_hold_the_ends_of_phases(tmp_path, frames, expected):
     scene = load(written(tmp_path, changed(SCENE, "every = 30", frames)))
