@@ -15,10 +15,9 @@ REPORT_EVERY = 200  # steps between two calls of `progress`
 
 
 class Model:
-    """An object of N nodes and E edges in motion: positions x, velocities v (N, dim) and ratios a (E,). SI
-    units.
+    """An object of N nodes and E edges in motion: positions x and velocities v (N, dim), ratios a (E,).
 
-    It starts at rest, free of stress, under the constraints and loads of the scene's first phase.
+    SI units. It starts at rest, free of stress, under the constraints and loads of the scene's first phase.
     """
 
     def __init__(self, scene: Scene):

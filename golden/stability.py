@@ -41,7 +41,7 @@ def largest_dt(scene: Scene) -> tuple[float, str, str]:
     """Largest stable step (s), the material that limits it, and whether by its "stiffness" or its "damping".
 
     A damper that depends on the force is taken both as stiff (c_max) and as soft as its law ever gets, the
-    ratios both free and clamped. The step is inf when nothing limits it.
+    ratios both free and held by their bounds. The step is inf when nothing limits it.
     """
     rate, name, reason = max(
         (_fastest(scene, ~held, *law) for held in _held(scene) for law in _laws(scene)), key=itemgetter(0))
@@ -65,7 +65,11 @@ def _held(scene: Scene) -> list[np.ndarray]:
 
 
 def _laws(scene: Scene):
-    """Per edge (rho c1, kappa, delta), one for each extreme of the element's behaviour; equal ones once."""
+    """Per edge (rho c1, kappa, delta), one for each extreme of the element's behaviour; equal ones once.
+
+    Held by a_min an edge is at its least stiff and its damping at its fastest; held by a_max it is slower than
+    that or than with a free ratio. At a_min = 0 no ratio rests: the natural length L pushes it away.
+    """
     k, c1, c_max, c_min, f1, f2, a_min, a_max = (
         scene.per_edge(name) for name in ("k", "c1", "c_max", "c_min", "f1", "f2", "a_min", "a_max"))
     soft = c_max.copy()
@@ -76,10 +80,10 @@ def _laws(scene: Scene):
     laws = {}
     for c2 in (c_max, soft):
         sigma, rho = 1 / (c1 + c2), 1 / (1 + c1 / c2)
-        clamped = rho * c1, rho * k * a_max, np.zeros_like(k)
+        held = rho * c1, rho * k * np.where(a_min > 0, a_min, a_max), np.zeros_like(k)
         moves = a_min < a_max
-        free = rho * c1, np.where(moves, rho**2 * k, clamped[1]), np.where(moves, k * sigma, 0)
-        laws |= {np.array(law).tobytes(): law for law in (clamped, free)}
+        free = rho * c1, np.where(moves, rho**2 * k, held[1]), np.where(moves, k * sigma, 0)
+        laws |= {np.array(law).tobytes(): law for law in (held, free)}
     return laws.values()
 
 

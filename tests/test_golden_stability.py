@@ -112,6 +112,9 @@ SIGMA, RHO = 1 / (C1 + C2), C2 / (C1 + C2)
     (plastic("m", C1), C1 / MASS, 0, "damping"),
     (rheological("m", K, C1, C2), RHO * C1 / MASS + K * SIGMA, RHO * K / MASS, "stiffness"),
     (rheological("m", K, C1, C2, 0.4, 0.4, 0.4), RHO * C1 / MASS, RHO * K * 0.4 / MASS, "stiffness"),
+    (rheological("m", 20.0, C1, C2), RHO * C1 / MASS + 20 * SIGMA, RHO * 20 / MASS, "stiffness"),
+    (rheological("m", 20.0, C1, C2, a_min=0.3), RHO * C1 / MASS, RHO * 20 * 0.3 / MASS, "damping"),
+    (rheological("m", 20.0, C1, C2, a_max=0.5), RHO * C1 / MASS, RHO * 20 * 0.5 / MASS, "damping"),
     (rheological("m", K, C1, 1e-3, a_max=0.5), C1 * 1e-3 / (C1 + 1e-3) / MASS + K / (C1 + 1e-3),
      K * 1e-3 / (C1 + 1e-3) / MASS, "stiffness"),
 ])
