@@ -1,6 +1,6 @@
 """The datapath of a node: Newton's law and one Runge-Kutta stage, over any number type (`golden.qarray`)."""
 
-from .block import normalise
+from .block import normalise, total_of
 from .rk4 import rk4
 
 
@@ -27,12 +27,11 @@ def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
         Every named quantity below. The outputs are ``force``, ``x``, ``v`` (for the next stage), ``x_base_next``,
         ``v_base_next``, ``x_total`` and ``v_total``.
     """
-    force = [sum(component[1:], component[0]).to(fmt.accumulator) for component in zip(*pulls, load, strict=True)]
+    edges = [total_of(component) for component in zip(*pulls, strict=True)]
+    force = [(pull + weight).to(fmt.accumulator) for pull, weight in zip(edges, load, strict=True)]
     unit = [c.scale(1 - fmt.accumulator.int_bits) for c in force]
     mantissa, shift = normalise(unit, fmt.operand)
-    acceleration = [
-        (inverse_mass.value * c).to(fmt.velocity, right=shift + inverse_mass.shift) for c in mantissa
-    ]
+    acceleration = [(inverse_mass.value * c).to(fmt.velocity, right=shift + inverse_mass.shift) for c in mantissa]
     displacement = [c.to(fmt.displacement, right=velocity_shift) for c in state.v]
 
     x, x_base_next, x_total = advance(stage, state.x_base, state.x_total, displacement, fmt.position, fmt.displacement)

@@ -2,7 +2,7 @@
 image and of the documentation follows from these."""
 
 from .formats import Formats
-from .qformat import Q
+from .qformat import BIT, Q, unsigned
 
 
 def material(fmt: Formats, tables: int) -> dict[str, Q]:
@@ -29,7 +29,7 @@ def material(fmt: Formats, tables: int) -> dict[str, Q]:
         "creep_shift": e,
         "first_octave": fmt.octave,
         "coarseness": fmt.coarseness,
-        "table": Q(max(1, (tables - 1).bit_length()), 0, signed=False),
+        "table": unsigned(max(1, (tables - 1).bit_length()), 0),
     }
 
 
@@ -63,6 +63,19 @@ def node_state(fmt: Formats) -> dict[str, Q]:
 
 def inverse_mass(fmt: Formats) -> dict[str, Q]:
     return {"value": fmt.mantissa, "shift": fmt.exponent}
+
+
+def edge_entry() -> dict[str, Q]:
+    """An edge in a lane's list: its nodes, whether it is the lane's first on them in a stage, its material. The lists
+    of all lanes are equally long; an entry that is not ``valid`` fills up."""
+    node, material, bit = unsigned(12, 0), unsigned(6, 0), BIT
+    return {"i": node, "j": node, "material": material, "i_first": bit, "j_first": bit, "valid": bit}
+
+
+def node_entry() -> dict[str, Q]:
+    """When a node may be updated: after so many rows of edges; and which accumulators then hold a force on it, first
+    ends in the lower bits."""
+    return {"need": unsigned(17, 0), "mask": unsigned(16, 0)}
 
 
 def width(record: dict[str, Q]) -> int:

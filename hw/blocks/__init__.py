@@ -1,0 +1,1 @@
+"""Hard blocks of an FPGA, one small module each, in plain Amaranth."""

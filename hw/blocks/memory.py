@@ -1,0 +1,88 @@
+"""Memories: a block RAM with its output register, and a small one of lookup tables."""
+
+from amaranth.hdl import Module, Signal
+from amaranth.lib import memory, wiring
+from amaranth.lib.wiring import In, Out
+
+READ_LATENCY = 2
+"""Cycles from a block RAM's address to its data: its own read and its output register."""
+
+
+class BlockRam(wiring.Component):
+    """A memory with one write and one read port in block RAM.
+
+    A word appears `READ_LATENCY` cycles after its address, one a cycle. A word that is read in the cycle in which it
+    is written is undefined on real devices (here it is the old one); a later read finds it.
+
+    Members
+    -------
+    write : In(1), write_address : In, write_data : In
+    address : In, data : Out
+
+    Raises
+    ------
+    ValueError
+        If the memory has no words or no bits.
+    """
+
+    def __init__(self, *, width: int, depth: int, init=()):
+        if depth < 1:
+            raise ValueError(f"depth must be at least 1, not {depth!r}")
+        if width < 1:
+            raise ValueError(f"width must be at least 1, not {width!r}")
+        self.depth, self._init = depth, init
+        bits = max(1, (depth - 1).bit_length())
+        super().__init__(
+            {
+                "write": In(1),
+                "write_address": In(bits),
+                "write_data": In(width),
+                "address": In(bits),
+                "data": Out(width),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=self._init)
+        write, read = words.write_port(), words.read_port()
+        m.d.comb += [
+            write.en.eq(self.write),
+            write.addr.eq(self.write_address),
+            write.data.eq(self.write_data),
+            read.addr.eq(self.address),
+        ]
+        m.d.sync += self.data.eq(read.data)
+        return m
+
+
+class LutRam(wiring.Component):
+    """A small memory of lookup tables: a word appears in the cycle after its address."""
+
+    def __init__(self, *, width: int, depth: int):
+        bits = max(1, (depth - 1).bit_length())
+        self.depth = depth
+        super().__init__(
+            {
+                "write": In(1),
+                "write_address": In(bits),
+                "write_data": In(width),
+                "address": In(bits),
+                "data": Out(width),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=())
+        write, read = words.write_port(), words.read_port(domain="comb")
+        word = Signal(len(self.data), reset_less=True)
+        m.d.comb += [
+            write.en.eq(self.write),
+            write.addr.eq(self.write_address),
+            write.data.eq(self.write_data),
+            read.addr.eq(self.address),
+            self.data.eq(word),
+        ]
+        m.d.sync += word.eq(read.data)
+        return m

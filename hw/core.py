@@ -1,0 +1,263 @@
+"""The coprocessor: lanes, node updater, sequencer and host port. Connections only."""
+
+from amaranth.hdl import Array, Cat, Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from golden import records
+from golden.graph import AXES
+from golden.rk4 import RK4
+
+from .blocks.memory import READ_LATENCY, BlockRam
+from .delay import DelayLines
+from .edge import EdgeDatapath
+from .fetch import Fetch
+from .host import HostPort
+from .lane import NEXT, NODE_WORDS, Lane, latency
+from .parameters import Parameters
+from .registers import ADDRESS_BITS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
+from .sequencer import Sequencer
+from .updater import NodeUpdater
+
+
+class Core(wiring.Component):
+    """The whole circuit behind its host port (`hw.host.HostPort`, whose first seven members these are).
+
+    Parameters
+    ----------
+    parameters : Parameters
+    lane : callable
+        Makes a lane from the parameters and the edge's datapath: a `Lane`, or an instance of its Verilog module.
+
+    Attributes
+    ----------
+    faults : list of str
+        Names of the bits of the control register ``FAULTS``.
+    """
+
+    def __init__(self, parameters: Parameters, lane=Lane):
+        self.parameters, self._make_lane = parameters, lane
+        self.datapath = EdgeDatapath(parameters.formats, parameters.tables, parameters.cost)
+        self.updater = NodeUpdater(parameters)
+        self.faults = sorted({*self.datapath.faults, *self.updater.faults})
+        self._check()
+        state = parameters.formats.state
+        super().__init__(
+            {
+                "request": In(1),
+                "write": In(1),
+                "address": In(ADDRESS_BITS),
+                "write_data": In(state),
+                "answer": Out(1),
+                "error": Out(1),
+                "read_data": Out(state),
+                "busy": Out(1),
+            }
+        )
+
+    def _check(self):
+        """An edge's own words must be back before it can come again; the way through its nodes is longer."""
+        datapath = self.datapath
+        loop = latency(datapath) + self.updater.latency
+        for word, output in NEXT.items():
+            written = READ_LATENCY + datapath.ready(output)
+            if written >= loop + datapath.schedule.arrival[f"edge_{word}"]:
+                raise ValueError(f"the edge's {word} must be written within {loop} cycles, not after {written}")
+
+    def elaborate(self, platform):
+        m = Module()
+        self._m, self._lines, p = m, DelayLines(m), self.parameters
+        m.submodules.host = self._host = HostPort(Map(p), len(self.faults))
+        m.submodules.sequencer = self._sequencer = Sequencer(row_bits=p.row_bits, node_bits=p.node_bits)
+        m.submodules.updater = updater = self.updater
+        self._lanes = []
+        for number in range(p.lanes):
+            m.submodules[f"lane{number}"] = lane = self._make_lane(p, self.datapath)
+            self._lanes.append(lane)
+
+        self._idle = Signal()
+        m.d.comb += [self._idle.eq(~self._sequencer.busy), self.busy.eq(self._sequencer.busy)]
+        self._rows()
+        self._nodes()
+        self._sums()
+        self._host_side()
+        self._counters()
+
+        fault = Signal(len(self.faults))
+        sources = [(self.datapath.faults, lane.fault) for lane in self._lanes] + [(updater.faults, updater.fault)]
+        for number, name in enumerate(self.faults):
+            bits = [bit[names.index(name)] for names, bit in sources if name in names]
+            m.d.comb += fault[number].eq(Cat(*bits).any())
+        m.d.comb += self._host.fault.eq(fault)
+        return m
+
+    def _entries(self, name, record, depth, fetch_address):
+        """A list's memory: read by its `Fetch`, or by the host while nothing runs."""
+        ram = BlockRam(width=records.width(record), depth=depth)
+        self._m.submodules[name] = ram
+        self._m.d.comb += [
+            ram.address.eq(Mux(self._idle, self._host.index, fetch_address)),
+            ram.write_address.eq(self._host.index),
+            ram.write_data.eq(self._host.data),
+        ]
+        return ram
+
+    def _rows(self):
+        """A row is an edge for every lane."""
+        m, p, host, sequencer = self._m, self.parameters, self._host, self._sequencer
+        record = records.edge_entry()
+        width = records.width(record)
+        m.submodules.row_fetch = fetch = Fetch(index_bits=p.row_bits, width=width * p.lanes)
+        words = []
+        for number in range(p.lanes):
+            ram = self._entries(f"edge_entries{number}", record, p.rows, fetch.address)
+            m.d.comb += ram.write.eq(self._strobe(Region.EDGE, 0, number))
+            words.append(ram.data)
+        self._edge_entries = words
+        m.d.comb += [
+            fetch.flush.eq(self._idle),
+            fetch.count.eq(host.rows),
+            fetch.data.eq(Cat(*words)),
+            fetch.take.eq(sequencer.row_take),
+        ]
+
+        updated = []
+        for number, lane in enumerate(self._lanes):
+            entry = unpack(record, fetch.word[number * width : (number + 1) * width])
+            ends = [entry[end] < sequencer.updated for end in "ij"]
+            updated.append(~entry["valid"] | ends[0] & ends[1])
+            m.d.comb += [
+                lane.valid.eq(sequencer.row_take & entry["valid"]),
+                lane.row.eq(fetch.index),
+                *(getattr(lane, name).eq(entry[name]) for name in ("i", "j", "i_first", "j_first", "material")),
+                *(bit.eq(value) for bit, value in stage_bits(lane, sequencer.row_stage)),
+                lane.velocity_shift.eq(host.velocity_shift),
+            ]
+        m.d.comb += [
+            sequencer.rows.eq(host.rows),
+            sequencer.row_valid.eq(fetch.valid),
+            sequencer.row_last.eq(fetch.last),
+            sequencer.row_nodes.eq(Cat(*updated).all()),
+            sequencer.row_summed.eq(self._lines.later(sequencer.row_take, latency(self.datapath) - 1)),
+        ]
+
+    def _nodes(self):
+        m, p, host, sequencer, updater = self._m, self.parameters, self._host, self._sequencer, self.updater
+        record = records.node_entry()
+        m.submodules.node_fetch = fetch = Fetch(index_bits=p.node_bits, width=records.width(record))
+        ram = self._entries("node_entries", record, p.nodes, fetch.address)
+        m.d.comb += ram.write.eq(self._strobe(Region.NODE, Map(p).words(Region.NODE).index("entry")))
+        self._node_entry = ram.data
+        entry = unpack(record, fetch.word)
+        m.d.comb += [
+            fetch.flush.eq(self._idle),
+            fetch.count.eq(host.nodes),
+            fetch.data.eq(ram.data),
+            fetch.take.eq(sequencer.node_take),
+            sequencer.nodes.eq(host.nodes),
+            sequencer.node_valid.eq(fetch.valid),
+            sequencer.node_last.eq(fetch.last),
+            sequencer.node_need.eq(entry["need"]),
+            sequencer.node_updated.eq(self._lines.later(sequencer.node_take, updater.latency)),
+            updater.valid.eq(sequencer.node_take),
+            updater.node.eq(fetch.index),
+            updater.mask.eq(entry["mask"]),
+            updater.velocity_shift.eq(host.velocity_shift),
+            *(bit.eq(value) for bit, value in stage_bits(updater, sequencer.node_stage)),
+        ]
+        for lane in self._lanes:
+            m.d.comb += [lane.update.eq(updater.update), lane.update_node.eq(updater.update_node)]
+            m.d.comb += [getattr(lane, f"update_{w}").eq(getattr(updater, f"update_{w}")) for w in NODE_WORDS]
+
+    def _sums(self):
+        """First ends of all lanes, then second ends, as in the node entry's mask."""
+        for number, lane in enumerate(self._lanes):
+            self._m.d.comb += lane.sum_node.eq(self.updater.node)
+            for half, end in enumerate("ij"):
+                bank = half * self.parameters.lanes + number
+                for axis in AXES:
+                    total = getattr(lane, f"sum_{end}_{axis}")
+                    self._m.d.comb += getattr(self.updater, f"sum{bank}_{axis}").eq(total)
+
+    def _strobe(self, region, word, lane=None):
+        host = self._host
+        here = host.strobe[region] & (host.word == word)
+        return here if lane is None else here & (host.lane == lane)
+
+    def _host_side(self):
+        m, host, updater = self._m, self._host, self.updater
+        words = Map(self.parameters).words(Region.NODE)
+
+        def strobes(names):
+            return Cat(self._strobe(Region.NODE, words.index(name)) for name in names)
+
+        m.d.comb += [
+            updater.host.eq(self._idle),
+            updater.host_index.eq(host.index),
+            updater.host_data.eq(host.data),
+            updater.host_write_state.eq(strobes(NODE_STATE)),
+            updater.host_write_load.eq(strobes(NODE_LOAD)),
+            updater.host_write_mass.eq(strobes(["inverse_mass"])),
+        ]
+        word, lane = (self._lines.later(signal, READ_LATENCY) for signal in (host.word, host.lane))
+        reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
+        reads += [updater.host_mass, self._node_entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
+        m.d.comb += host.words[Region.NODE].eq(Array(reads)[word])
+
+        edges, materials, tables = [], [], []
+        for number, (port, entry) in enumerate(zip(self._lanes, self._edge_entries, strict=True)):
+            material = Signal.like(port.host_material, name=f"material_word{number}")
+            m.d.sync += material.eq(port.host_material)
+            m.d.comb += [
+                port.host.eq(self._idle),
+                port.host_index.eq(host.index),
+                port.host_data.eq(host.data),
+                port.host_write_length.eq(self._strobe(Region.EDGE, 1, number)),
+                port.host_write_ratio.eq(self._strobe(Region.EDGE, 2, number)),
+                port.host_write_table.eq(Cat(self._strobe(Region.TABLE, 0), self._strobe(Region.TABLE, 1))),
+                port.host_field.eq(self._lines.later(host.word, 1)),
+                *(bit.eq(self._strobe(Region.MATERIAL, k)) for k, bit in enumerate(port.host_write_material)),
+            ]
+            edges.append(Array([entry, port.host_length, port.host_ratio])[word])
+            materials.append(material)
+            half = len(port.host_table) // 2
+            tables.append(Mux(word[0], port.host_table[half:], port.host_table[:half]))
+        for region, choices in ((Region.EDGE, edges), (Region.MATERIAL, materials), (Region.TABLE, tables)):
+            m.d.comb += host.words[region].eq(Array(choices)[lane])
+        for name in ("request", "write", "address", "write_data"):
+            m.d.comb += getattr(host, name).eq(getattr(self, name))
+        for name in ("answer", "error", "read_data"):
+            m.d.comb += getattr(self, name).eq(getattr(host, name))
+
+    def _counters(self):
+        m, host, sequencer = self._m, self._host, self._sequencer
+        m.d.comb += [
+            sequencer.start.eq(host.start),
+            sequencer.steps.eq(host.steps),
+            host.busy.eq(sequencer.busy),
+            host.steps_done.eq(sequencer.steps_done),
+        ]
+        events = (("cycles", sequencer.busy), ("rows_issued", sequencer.row_take), ("row_waits", sequencer.row_waits))
+        for name, event in events:
+            counter = Signal(len(host.cycles), name=name)
+            m.d.comb += getattr(host, name).eq(counter)
+            with m.If(host.start):
+                m.d.sync += counter.eq(0)
+            with m.Elif(event):
+                m.d.sync += counter.eq(counter + 1)
+
+
+def unpack(record, word):
+    """The fields of a packed record (`golden.records.pack`) as slices."""
+    fields, low = {}, 0
+    for name, q in record.items():
+        fields[name] = word[low : low + q.width]
+        low += q.width
+    return fields
+
+
+def stage_bits(component, stage):
+    """(port, value) of the stage bits of a component for a stage number."""
+    for bit in RK4.stage(0):
+        value = Array([RK4.stage(s)[bit] for s in range(RK4.stages)])[stage]
+        yield getattr(component, f"stage_{bit}"), value

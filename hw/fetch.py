@@ -1,0 +1,75 @@
+"""Reads a list again and again, ahead of whoever works it off."""
+
+from amaranth.hdl import Cat, Module, ResetInserter, Signal
+from amaranth.lib import fifo, wiring
+from amaranth.lib.wiring import In, Out
+
+from .blocks.memory import READ_LATENCY
+
+
+class Fetch(wiring.Component):
+    """Entries 0 to ``count - 1`` of a memory over and over, one a cycle, each with its place in the list.
+
+    Members
+    -------
+    flush : In(1)
+        Start over; held while idle.
+    count : In
+        Entries of the list, at least 1.
+    address : Out, data : In
+        To the memory, whose latency is `READ_LATENCY`.
+    valid : Out(1), take : In(1)
+        There is an entry; it is taken.
+    index, last, word : Out
+        The entry: its place, whether it is the list's last, and what the memory holds there.
+    """
+
+    def __init__(self, *, index_bits: int, width: int):
+        self._width = width
+        super().__init__(
+            {
+                "flush": In(1),
+                "count": In(index_bits + 1),
+                "address": Out(index_bits),
+                "data": In(width),
+                "valid": Out(1),
+                "take": In(1),
+                "index": Out(index_bits),
+                "last": Out(1),
+                "word": Out(width),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        depth = 4 * READ_LATENCY
+        entry = Cat(self.word, self.last, self.index)
+        queue = fifo.SyncFIFO(width=len(entry), depth=depth)
+        m.submodules.queue = ResetInserter(self.flush)(queue)
+        under_way = Signal(range(depth + 1))  # entries asked for and not yet taken
+        ask = Signal()
+        m.d.comb += ask.eq((under_way != depth) & ~self.flush)
+        last = Signal()
+        m.d.comb += last.eq(self.address + 1 == self.count)
+        with m.If(self.flush):
+            m.d.sync += [self.address.eq(0), under_way.eq(0)]
+        with m.Else():
+            m.d.sync += under_way.eq(under_way + ask - self.take)
+            with m.If(ask):
+                m.d.sync += self.address.eq(self.address + 1)
+                with m.If(last):
+                    m.d.sync += self.address.eq(0)
+
+        tag, arrived = Cat(last, self.address), ask
+        for k in range(READ_LATENCY):
+            tag_next, arrived_next = Signal(len(tag), name=f"tag_{k}"), Signal(name=f"arrived_{k}")
+            m.d.sync += [tag_next.eq(tag), arrived_next.eq(arrived & ~self.flush)]
+            tag, arrived = tag_next, arrived_next
+        m.d.comb += [
+            queue.w_en.eq(arrived & ~self.flush),
+            queue.w_data.eq(Cat(self.data, tag)),
+            self.valid.eq(queue.r_rdy),
+            entry.eq(queue.r_data),
+            queue.r_en.eq(self.take),
+        ]
+        return m

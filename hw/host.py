@@ -1,0 +1,189 @@
+"""The host port: a memory-mapped view of the machine (`hw.registers`)."""
+
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from .blocks.memory import READ_LATENCY
+from .registers import (
+    ADDRESS_BITS,
+    INDEX_BITS,
+    LANE_BITS,
+    MAGIC,
+    REGION_BITS,
+    VERSION,
+    WORD_BITS,
+    Control,
+    Map,
+    Region,
+)
+
+LATENCY = READ_LATENCY + 3
+"""Cycles from a request to its answer: request register, decoding, the memory, answer register."""
+
+
+class HostPort(wiring.Component):
+    """Takes a request per cycle, answers each `LATENCY` cycles later, in order.
+
+    A request out of range, a write to a read-only word, any access to a memory while the machine is busy, and a run of
+    nothing are refused: the answer is an error, the refusal is counted, nothing is changed.
+
+    Members
+    -------
+    request, write, address, write_data : In
+    answer, error, read_data : Out
+    index, data, word, lane : Out
+        Of the access that is going on, to the memories.
+    strobe : Out
+        One bit a region: it is a write to that region.
+    words : In
+        What each region's memories hold at the access's address, `READ_LATENCY` cycles later.
+    start, steps : Out
+    busy, cycles, rows_issued, row_waits, steps_done, fault : In
+    rows, nodes, velocity_shift : Out
+    """
+
+    def __init__(self, map: Map, faults: int):
+        self._map = map
+        p = map.parameters
+        state = p.formats.state
+        super().__init__(
+            {
+                "request": In(1),
+                "write": In(1),
+                "address": In(ADDRESS_BITS),
+                "write_data": In(state),
+                "answer": Out(1),
+                "error": Out(1),
+                "read_data": Out(state),
+                "index": Out(p.index_bits),
+                "data": Out(state),
+                "word": Out(WORD_BITS),
+                "lane": Out(LANE_BITS),
+                "strobe": Out(len(Region)),
+                "words": In(state).array(len(Region)),
+                "start": Out(1),
+                "steps": Out(32),
+                "busy": In(1),
+                "cycles": In(state),
+                "rows_issued": In(state),
+                "row_waits": In(state),
+                "steps_done": In(32),
+                "fault": In(faults),
+                "rows": Out(p.row_bits + 1),
+                "nodes": Out(p.node_bits + 1),
+                "velocity_shift": Out(p.formats.exponent.width),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        request, write = Signal(), Signal()
+        address, data = Signal(ADDRESS_BITS), Signal.like(self.write_data)
+        m.d.sync += [request.eq(self.request), write.eq(self.write)]
+        m.d.sync += [address.eq(self.address), data.eq(self.write_data)]
+
+        parts, low = [], 0
+        for bits in (INDEX_BITS, WORD_BITS, LANE_BITS, REGION_BITS):
+            parts.append(address[low : low + bits])
+            low += bits
+        index, word, lane, region = parts
+
+        allowed = Signal()
+        with m.Switch(region):
+            for r in Region:
+                with m.Case(r):
+                    inside = (index < self._map.depth(r)) & (word < len(self._map.words(r))) & (lane < self._map.lanes(r))
+                    m.d.comb += allowed.eq(inside & self._permitted(r, write, index, word, data))
+        go = Signal()
+        m.d.comb += go.eq(request & allowed)
+
+        # The access itself, a cycle later; its word and region wait for the memory
+        m.d.sync += [self.index.eq(index), self.data.eq(data), self.word.eq(word), self.lane.eq(lane)]
+        m.d.sync += [self.strobe[r].eq(go & write & (region == r)) for r in Region]
+        control = go & (region == Region.CONTROL)
+        m.d.sync += self.start.eq(control & write & (index == Control.RUN))
+        self._control_writes(m, control & write, index, data)
+
+        refused = Signal(32)
+        m.d.sync += refused.eq(refused + (request & ~allowed))
+        with m.If(control & write & (index == Control.REFUSED)):
+            m.d.sync += refused.eq(0)
+
+        tag = Cat(request, request & ~allowed, region)
+        for k in range(READ_LATENCY + 1):
+            tag_next = Signal(len(tag), name=f"tag_{k}")
+            m.d.sync += tag_next.eq(tag)
+            tag = tag_next
+        register = self._control_reads(m, index, refused)
+        words = [register, *(self.words[r] for r in Region if r != Region.CONTROL)]
+        m.d.sync += [
+            self.answer.eq(tag[0]),
+            self.error.eq(tag[1]),
+            self.read_data.eq(Mux(tag[1], 0, Array(words)[tag[2:]])),
+        ]
+        return m
+
+    def _permitted(self, region, write, index, word, data):
+        p, idle = self._map.parameters, ~self.busy & ~self.start
+        if region == Region.NODE:
+            force = next(k for k, name in enumerate(self._map.words(region)) if name.startswith("force"))
+            return idle & ~(write & (word >= force))
+        if region != Region.CONTROL:
+            return idle
+        writable = Array(
+            [
+                {
+                    Control.FAULTS: Const(1),
+                    Control.REFUSED: Const(1),
+                    Control.ROW_COUNT: idle & (data != 0) & (data <= p.rows),
+                    Control.NODE_COUNT: idle & (data != 0) & (data <= p.nodes),
+                    Control.VELOCITY_SHIFT: idle & (data < 1 << p.formats.exponent.width - 1),
+                    Control.RUN: idle & (data != 0) & (data < 1 << 32) & (self.rows != 0) & (self.nodes != 0),
+                }.get(register, Const(0))
+                for register in Control
+            ]
+        )
+        return ~write | writable[index[: (len(Control) - 1).bit_length()]]
+
+    def _control_writes(self, m, write, index, data):
+        for register, target in (
+            (Control.ROW_COUNT, self.rows),
+            (Control.NODE_COUNT, self.nodes),
+            (Control.VELOCITY_SHIFT, self.velocity_shift),
+            (Control.RUN, self.steps),
+        ):
+            with m.If(write & (index == register)):
+                m.d.sync += target.eq(data)
+        clear = Mux(write & (index == Control.FAULTS), data[: len(self.fault)], 0)
+        self._sticky = Signal(len(self.fault), name="sticky_faults")
+        m.d.sync += self._sticky.eq(self._sticky & ~clear | self.fault)
+
+    def _control_reads(self, m, index, refused):
+        p, state = self._map.parameters, len(self.read_data)
+        values = {
+            Control.MAGIC: Const(MAGIC, state),
+            Control.VERSION: Const(VERSION, state),
+            Control.LANES: Const(p.lanes, state),
+            Control.NODES: Const(p.nodes, state),
+            Control.ROWS: Const(p.rows, state),
+            Control.MATERIALS: Const(p.materials, state),
+            Control.TABLES: Const(p.tables, state),
+            Control.BUSY: self.busy,
+            Control.CYCLES: self.cycles,
+            Control.ROWS_ISSUED: self.rows_issued,
+            Control.ROW_WAITS: self.row_waits,
+            Control.STEPS_DONE: self.steps_done,
+            Control.FAULTS: self._sticky,
+            Control.REFUSED: refused,
+            Control.ROW_COUNT: self.rows,
+            Control.NODE_COUNT: self.nodes,
+            Control.VELOCITY_SHIFT: self.velocity_shift,
+            Control.RUN: Const(0, state),
+        }
+        register = Array([values[control] for control in Control])[index[: (len(Control) - 1).bit_length()]]
+        for k in range(READ_LATENCY + 1):
+            register_next = Signal(state, name=f"register_{k}")
+            m.d.sync += register_next.eq(register)
+            register = register_next
+        return register

@@ -1,0 +1,205 @@
+"""A lane: an edge processor, the memories of its edges, its copy of the nodes and its sums of forces."""
+
+from amaranth.hdl import Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from golden import records
+from golden.graph import AXES
+
+from .accumulator import WRITTEN, Accumulator
+from .blocks.memory import READ_LATENCY, BlockRam, LutRam
+from .edge import EdgeDatapath, EdgeProcessor
+from .operations import shape
+from .parameters import Parameters
+
+NODE_WORDS = tuple(f"{quantity}_{axis}" for quantity in "xv" for axis in AXES)
+EDGE_WORDS = ("length", "base", "ratio", "total")
+NEXT = {"base": "base_next", "ratio": "ratio_next", "total": "total_next"}
+
+
+def latency(datapath: EdgeDatapath) -> int:
+    """Cycles from the issue of an edge to the first in which the sums with its force may be read."""
+    return READ_LATENCY + datapath.ready("pull_x") + WRITTEN
+
+
+def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
+    """The ports of a lane."""
+    p, fmt = parameters, parameters.formats
+    materials = records.material(fmt, p.tables)
+    node_formats = {"x": fmt.position, "v": fmt.velocity}
+    return {
+        "valid": In(1),
+        "row": In(p.row_bits),
+        **{name: In(p.node_bits) for name in ("i", "j")},
+        **{name: In(1) for name in ("i_first", "j_first")},
+        "material": In(p.material_bits),
+        **{f"stage_{bit}": In(1) for bit in ("first", "last", "half", "double")},
+        "velocity_shift": In(shape(fmt.exponent)),
+        "update": In(len(NODE_WORDS)),
+        "update_node": In(p.node_bits),
+        **{f"update_{word}": In(shape(node_formats[word[0]])) for word in NODE_WORDS},
+        "sum_node": In(p.node_bits),
+        **{f"sum_{end}_{axis}": Out(shape(fmt.accumulator)) for end in "ij" for axis in AXES},
+        "fault": Out(len(datapath.faults)),
+        "host": In(1),
+        "host_index": In(p.index_bits),
+        "host_data": In(p.formats.state),
+        "host_write_length": In(1),
+        "host_write_ratio": In(1),
+        "host_write_material": In(len(materials)),
+        "host_write_table": In(2),
+        "host_field": In(range(len(materials))),
+        "host_length": Out(fmt.state),
+        "host_ratio": Out(fmt.state),
+        "host_material": Out(fmt.state),
+        "host_table": Out(2 * fmt.operand * 2),
+    }
+
+
+class Lane(wiring.Component):
+    """Takes an edge per cycle: reads its nodes and its own state, processes it, adds its force to both nodes.
+
+    Latency: the sums of an edge may be read `latency` cycles after it was issued. Throughput one edge per cycle.
+
+    Members
+    -------
+    valid, row, i, j, i_first, j_first, material : In
+        The edge that is issued: its place in the lane's memories, its nodes, whether it is the first on them in this
+        lane, its material.
+    stage_first, stage_last, stage_half, stage_double : In(1)
+        The Runge-Kutta stage it is issued in.
+    velocity_shift : In
+        Static.
+    update, update_node, update_x_*, update_v_* : In
+        A node's new state; ``update`` has a bit for each of `NODE_WORDS`.
+    sum_node : In, sum_i_*, sum_j_* : Out
+        The forces summed on a node as first and as second end of edges, `READ_LATENCY` cycles later.
+    fault : Out
+        One bit for each name in ``datapath.faults``.
+    host_* : In / Out
+        Reads and writes of the host, only while no edge is under way; see `hw.host`.
+    """
+
+    def __init__(self, parameters: Parameters, datapath: EdgeDatapath):
+        self.parameters, self.datapath = parameters, datapath
+        self._materials = records.material(parameters.formats, parameters.tables)
+        self._state = records.edge_state(parameters.formats)
+        super().__init__(members(parameters, datapath))
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.edge = self._edge = edge = EdgeProcessor(self.datapath)
+        self._m, self._ready, self._arrival = m, self.datapath.ready, self.datapath.schedule.arrival
+        self._lines = {}
+        self._nodes()
+        self._edges()
+        self._material()
+        self._sums()
+        m.d.comb += [edge.valid.eq(self._later("valid", 0)), edge.velocity_shift.eq(self.velocity_shift)]
+        for bit in ("first", "last", "half", "double"):
+            name = f"stage_{bit}"
+            m.d.comb += getattr(edge, name).eq(self._later(name, self._arrival[name]))
+        m.d.comb += [
+            edge.table_write.eq(self.host_write_table),
+            edge.table_address.eq(self.host_index),
+            edge.table_data.eq(self.host_data),
+            edge.table_read.eq(self.host),
+            self.host_table.eq(edge.table_word),
+            self.fault.eq(edge.fault),
+        ]
+        return m
+
+    def _later(self, name: str, cycle: int):
+        """What was issued, when its edge is in ``cycle`` of the edge processor; its nodes are read before cycle 0."""
+        delay = READ_LATENCY + cycle
+        line = self._lines.setdefault(name, [getattr(self, name)])
+        while len(line) <= delay:
+            register = Signal.like(line[-1], name=f"{name}_c{len(line) - READ_LATENCY}".replace("-", "m"))
+            self._m.d.sync += register.eq(line[-1])
+            line.append(register)
+        return line[delay]
+
+    def _nodes(self):
+        """Two copies of the nodes' states, one for each end of an edge."""
+        for end in "ij":
+            for number, word in enumerate(NODE_WORDS):
+                source = getattr(self, f"update_{word}")
+                ram = BlockRam(width=len(source), depth=self.parameters.nodes)
+                self._m.submodules[f"node_{end}_{word}"] = ram
+                target = getattr(self._edge, f"{end}_{word}")
+                self._m.d.comb += [
+                    ram.write.eq(self.update[number]),
+                    ram.write_address.eq(self.update_node),
+                    ram.write_data.eq(source),
+                    ram.address.eq(getattr(self, end)),
+                    target.eq(ram.data),
+                ]
+
+    def _edges(self):
+        """The edges' own words, each read when the edge processor needs it and written when it is done."""
+        m, host_writes = self._m, {"length": self.host_write_length}
+        host_writes |= dict.fromkeys(("base", "ratio"), self.host_write_ratio)
+        for word in EDGE_WORDS:
+            ram = BlockRam(width=self._state[word].width, depth=self.parameters.rows)
+            m.submodules[f"edge_{word}"] = ram
+            read = self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY)
+            m.d.comb += [ram.address.eq(read), getattr(self._edge, f"edge_{word}").eq(ram.data)]
+            if word in NEXT:
+                ready = self._ready(NEXT[word])
+                m.d.comb += [
+                    ram.write.eq(self._later("valid", ready)),
+                    ram.write_address.eq(self._later("row", ready)),
+                    ram.write_data.eq(getattr(self._edge, NEXT[word])),
+                ]
+            with m.If(self.host):
+                m.d.comb += ram.address.eq(self.host_index)
+                if word in host_writes:
+                    m.d.comb += [
+                        ram.write.eq(host_writes[word]),
+                        ram.write_address.eq(self.host_index),
+                        ram.write_data.eq(self.host_data),
+                    ]
+            if word in ("length", "ratio"):
+                m.d.comb += getattr(self, f"host_{word}").eq(ram.data)
+
+    def _material(self):
+        """A small memory for each coefficient, read in the cycle before it is needed."""
+        words = []
+        for number, (name, q) in enumerate(self._materials.items()):
+            ram = LutRam(width=q.width, depth=self.parameters.materials)
+            self._m.submodules[f"material_{name}"] = ram
+            address = self._later("material", self._arrival[f"material_{name}"] - 1)
+            self._m.d.comb += [
+                ram.address.eq(address),
+                ram.write.eq(self.host_write_material[number]),
+                ram.write_address.eq(self.host_index),
+                ram.write_data.eq(self.host_data),
+                getattr(self._edge, f"material_{name}").eq(ram.data),
+            ]
+            with self._m.If(self.host):
+                self._m.d.comb += ram.address.eq(self.host_index)
+            words.append(ram.data)
+        with self._m.Switch(self.host_field):
+            for number, word in enumerate(words):
+                with self._m.Case(number):
+                    self._m.d.comb += self.host_material.eq(word)
+
+    def _sums(self):
+        p, announce = self.parameters, self._ready("pull_x") - READ_LATENCY
+        for end in "ij":
+            sums = Accumulator(formats=p.formats, nodes=p.nodes, subtract=end == "j")
+            self._m.submodules[f"sums_{end}"] = sums
+            self._m.d.comb += [
+                sums.valid.eq(self._later("valid", announce)),
+                sums.node.eq(self._later(end, announce)),
+                sums.first.eq(self._later(f"{end}_first", announce)),
+                sums.sum_node.eq(self.sum_node),
+            ]
+            for axis in AXES:
+                self._m.d.comb += [
+                    getattr(sums, f"pull_{axis}").eq(getattr(self._edge, f"pull_{axis}")),
+                    getattr(self, f"sum_{end}_{axis}").eq(getattr(sums, f"sum_{axis}")),
+                ]
+        ready = {self._ready(f"pull_{axis}") for axis in AXES}
+        assert len(ready) == 1, "the components of a force come in the same cycle"

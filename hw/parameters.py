@@ -1,0 +1,72 @@
+"""The parameters of a circuit: how much it holds, how wide its words are, what its device's registers cost."""
+
+from dataclasses import dataclass, field
+
+from golden.formats import Formats
+
+from .cost import Cost
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """What a circuit is built for.
+
+    Parameters
+    ----------
+    lanes : int
+        Edge processors, 1 to 8.
+    nodes, edges, materials, tables : int
+        Capacity. Each lane holds ``edges / lanes`` edges, rounded up.
+    formats : Formats
+    cost : Cost
+
+    Raises
+    ------
+    ValueError
+        If one of them is out of range.
+    """
+
+    lanes: int = 4
+    nodes: int = 512
+    edges: int = 4096
+    materials: int = 16
+    tables: int = 4
+    formats: Formats = field(default_factory=Formats)
+    cost: Cost = field(default_factory=Cost)
+
+    RANGES = {  # noqa: RUF012 (a constant)
+        "lanes": (1, 8),
+        "nodes": (2, 4096),
+        "edges": (1, 65536),
+        "materials": (1, 64),
+        "tables": (1, 16),
+    }
+
+    def __post_init__(self):
+        for name, (low, high) in self.RANGES.items():
+            value = getattr(self, name)
+            if not isinstance(value, int) or not low <= value <= high:
+                raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
+
+    @property
+    def rows(self) -> int:
+        """Edges a lane holds."""
+        return -(-self.edges // self.lanes)
+
+    @property
+    def row_bits(self) -> int:
+        return max(1, (self.rows - 1).bit_length())
+
+    @property
+    def node_bits(self) -> int:
+        return (self.nodes - 1).bit_length()
+
+    @property
+    def material_bits(self) -> int:
+        return max(1, (self.materials - 1).bit_length())
+
+    @property
+    def index_bits(self) -> int:
+        """Bits of a host address's index, for the deepest memory."""
+        table = self.tables << self.formats.damper_index.width
+        return (max(self.rows, self.nodes, self.materials, table) - 1).bit_length()

@@ -1,0 +1,192 @@
+"""From a datapath's graph (`golden.graph`) to a pipeline: registers and latency follow from what each operation costs."""
+
+import itertools
+
+from amaranth.hdl import Cat, Const, Module, Signal
+
+from golden.graph import Graph, Node
+
+from .blocks.multiplier import Multiplier
+from .cost import Cost
+from .operations import STEP_COUNT, STEPS, field, shape
+
+WIRES = {"scale", "field", "part"}
+"""Operations that are only another reading of the same bits."""
+
+
+class Schedule:
+    """The cycle of every node of a graph: as early as its operands allow, or, where none of them comes with the item
+    itself, as late as its users allow.
+
+    A cycle is counted from the one in which the pipeline takes its inputs, so that the latency of an output is its
+    cycle: ``cycle[node]``.
+
+    Parameters
+    ----------
+    graph : Graph
+    cost : Cost
+    late : set of str
+        Inputs that come when they are needed, in cycle ``arrival[name]``: whoever provides them reads a memory then,
+        instead of this pipeline carrying the word along.
+    static : set of str
+        Inputs that do not change while the pipeline works.
+
+    Attributes
+    ----------
+    latency : int
+        Cycles from an item's inputs to the last of its results.
+    """
+
+    def __init__(self, graph: Graph, cost: Cost, *, late=frozenset(), static=frozenset()):
+        self.graph, self.cost, self._late, self._static = graph, cost, late, static
+        self.cycle: dict[Node, int | None] = {}
+        self.start: dict[Node, int] = {}
+        for node in graph.nodes:
+            self.cycle[node] = self._earliest(node)
+        self.latency = max(cycle for cycle in self.cycle.values() if cycle is not None)
+        for node in reversed(graph.nodes):
+            if self.cycle[node] is None and node.kind not in {"const", "input", *WIRES}:
+                self.cycle[node] = self._needed(node)
+                self.start[node] = self.cycle[node] - getattr(cost, node.kind)
+        self.arrival = {name: self._needed(graph.inputs[name]) for name in late}
+
+    def _earliest(self, node: Node) -> int | None:
+        """None where no operand comes with the item."""
+        if node.kind == "const" or (node.kind == "input" and node.name in self._static | self._late):
+            return None
+        if node.kind == "input":
+            return 0
+        ready = [self.cycle[operand] for operand in node.operands if self.cycle[operand] is not None]
+        if not ready or node.kind in WIRES:
+            return max(ready, default=None)
+        self.start[node] = max(ready)
+        return self.start[node] + getattr(self.cost, node.kind)
+
+    def _needed(self, node: Node) -> int:
+        """The first cycle in which an operation takes this node, directly or through wires; at the latest the last."""
+        readings = {node}
+        for other in self.graph.nodes:
+            if other.kind in WIRES and other.operands[0] in readings:
+                readings.add(other)
+        uses = (start for other, start in self.start.items() if readings & set(other.operands))
+        return min(uses, default=self.latency)
+
+    def stages(self) -> list[tuple[str, str, int, int]]:
+        """(name, operation, first cycle, cycle of the result) of each operation that takes time."""
+        return [(n.name, n.kind, self.start[n], self.cycle[n]) for n in self.graph.nodes if n in self.start]
+
+
+class Pipe:
+    """The registers and multipliers of a scheduled graph, written into a module.
+
+    Parameters
+    ----------
+    m : Module
+    schedule : Schedule
+    inputs : dict of str to Value
+        Each in its cycle: 0, or ``schedule.arrival``.
+    valid : Value
+        1 in cycle 0 of an item: gates its faults.
+    tables : dict of str to callable
+        ``tables[name](address values)`` gives a table's word ``schedule.cost.read`` cycles later.
+
+    Attributes
+    ----------
+    faults : dict of str to Value
+        1 whenever a fault of that name happens.
+    """
+
+    def __init__(self, m: Module, schedule: Schedule, inputs, valid, tables=None):
+        self._m, self._schedule, self._inputs, self._tables = m, schedule, inputs, tables or {}
+        self._lines: dict[object, list] = {}
+        self._valid = valid
+        self._faults: dict[str, list] = {}
+        for node in schedule.graph.nodes:
+            if node in schedule.start:
+                self._emit(node)
+        for name, node in schedule.graph.faults:
+            self._report(name, self.at(node, schedule.cycle[node]), schedule.cycle[node])
+        self.faults = {name: Cat(*bits).any() for name, bits in self._faults.items()}
+
+    def output(self, name: str, cycle: int | None = None):
+        """The value of an output in its cycle, or delayed to a later one."""
+        node = self._schedule.graph.outputs[name]
+        return self.at(node, self._schedule.cycle[node] if cycle is None else cycle)
+
+    def valid(self, cycle: int):
+        """1 when the item that is in ``cycle`` is a valid one."""
+        return self._delayed("valid", "valid", self._valid, 0, cycle)
+
+    def at(self, node: Node, cycle: int):
+        """A node's value in ``cycle``; delay lines are shared."""
+        if node.kind == "const":
+            return Const(node.detail, shape(node.fmt))
+        if node.kind in WIRES:
+            return field(node, self.at(node.operands[0], cycle))
+        if node.kind == "input":
+            return self._input(node, cycle)
+        return self._delayed(node, node.name, self._lines[node][0], self._schedule.cycle[node], cycle)
+
+    def _input(self, node, cycle):
+        first = self._schedule.cycle[node]
+        if first is None:  # late, or static and then the same in every cycle
+            first = self._schedule.arrival.get(node.name, cycle)
+        return self._delayed(node, node.name, self._inputs[node.name], first, cycle)
+
+    def _delayed(self, key, name, value, first, cycle):
+        line = self._lines.setdefault(key, [value])
+        while len(line) <= cycle - first:
+            register = Signal(value.shape(), name=f"{name}_c{first + len(line)}", reset_less=key != "valid")
+            self._m.d.sync += register.eq(line[-1])
+            line.append(register)
+        return line[cycle - first]
+
+    def _emit(self, node: Node):
+        start, done = self._schedule.start[node], self._schedule.cycle[node]
+        operands = [self.at(operand, start) for operand in node.operands]
+        if node.kind == "mul":
+            multiplier = Multiplier(*(shape(operand.fmt) for operand in node.operands), registers=done - start)
+            self._m.submodules[node.name] = multiplier
+            self._m.d.comb += [multiplier.a.eq(operands[0]), multiplier.b.eq(operands[1])]
+            result = multiplier.product
+        elif node.kind == "read":
+            result = self._tables[node.detail[0]](*operands)
+        else:
+            result, *fault = self._steps(node, operands)
+            if fault and node.fmt.name:
+                self._report(node.fmt.name, fault[0], done)
+        self._lines[node] = [result]
+
+    def _steps(self, node, operands):
+        """The operation's values, the registers that it costs behind the last of its steps."""
+        wires = itertools.count(1)
+
+        def wire(value):
+            signal = Signal(value.shape(), name=f"{node.name}_w{next(wires)}")
+            self._m.d.comb += signal.eq(value)
+            return signal
+
+        count, cost = STEP_COUNT.get(node.kind, 1), self._schedule.cycle[node] - self._schedule.start[node]
+        steps = STEPS[node.kind](wire, node, *operands)
+        values = next(steps)
+        for step in range(1, count):
+            if count - step < cost:
+                values = self._register([f"{node.name}_s{step}_{n}" for n in range(len(values))], values)
+            values = steps.send(values)
+        names = [node.name, f"{node.name}_fault"][: len(values)]
+        result = Signal(shape(node.fmt), name=node.name, reset_less=True)
+        self._m.d["sync" if cost else "comb"] += result.eq(values[0])
+        rest = self._register(names[1:], values[1:]) if cost else values[1:]
+        values = (result, *rest)
+        for extra in range(count, cost):
+            values = self._register([f"{name}_r{extra}" for name in names], values)
+        return values
+
+    def _register(self, names, values):
+        registers = [Signal(v.shape(), name=name, reset_less=True) for name, v in zip(names, values, strict=True)]
+        self._m.d.sync += [register.eq(value) for register, value in zip(registers, values, strict=True)]
+        return tuple(registers)
+
+    def _report(self, name, bit, cycle):
+        self._faults.setdefault(name, []).append(bit & self.valid(cycle))
+

@@ -1,0 +1,116 @@
+"""The memory map: one table that the circuit, its driver, the manifest and the documentation read."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from golden import records
+from golden.graph import AXES
+
+from .parameters import Parameters
+
+INDEX_BITS, WORD_BITS, LANE_BITS, REGION_BITS = 16, 5, 3, 3
+ADDRESS_BITS = INDEX_BITS + WORD_BITS + LANE_BITS + REGION_BITS
+
+MAGIC = int.from_bytes(b"RHEO")
+VERSION = 1
+
+
+class Region(IntEnum):
+    CONTROL = 0
+    NODE = 1
+    EDGE = 2
+    MATERIAL = 3
+    TABLE = 4
+
+
+class Control(IntEnum):
+    """Index of a control register. Those up to `STEPS_DONE` are read only."""
+
+    MAGIC = 0
+    VERSION = 1
+    LANES = 2
+    NODES = 3
+    ROWS = 4
+    MATERIALS = 5
+    TABLES = 6
+    BUSY = 7
+    CYCLES = 8
+    ROWS_ISSUED = 9
+    ROW_WAITS = 10
+    STEPS_DONE = 11
+    FAULTS = 12
+    REFUSED = 13
+    ROW_COUNT = 14
+    NODE_COUNT = 15
+    VELOCITY_SHIFT = 16
+    RUN = 17
+
+
+CONTROL_TEXT = {
+    Control.MAGIC: "`RHEO`",
+    Control.VERSION: "of this map",
+    Control.LANES: "edge processors",
+    Control.NODES: "capacity",
+    Control.ROWS: "capacity: edges of each lane",
+    Control.MATERIALS: "capacity",
+    Control.TABLES: "capacity: damper tables",
+    Control.BUSY: "1 while steps are run",
+    Control.CYCLES: "of the last run",
+    Control.ROWS_ISSUED: "in the last run",
+    Control.ROW_WAITS: "cycles of the last run in which a row waited for its nodes",
+    Control.STEPS_DONE: "in the last run",
+    Control.FAULTS: "sticky, a bit for each name of the manifest; a 1 that is written clears it",
+    Control.REFUSED: "requests refused; any write clears it",
+    Control.ROW_COUNT: "rows of edges in use, at least 1",
+    Control.NODE_COUNT: "nodes in use, at least 1",
+    Control.VELOCITY_SHIFT: "the velocity full scale is 2^-this sizes per step",
+    Control.RUN: "a write runs so many steps, at least 1",
+}
+
+NODE_STATE = tuple(f"{quantity}_{axis}" for quantity in "xv" for axis in AXES)
+NODE_LOAD = tuple(f"load_{axis}" for axis in AXES)
+NODE_FORCE = tuple(f"force_{axis}" for axis in AXES)
+NODE_WORDS = (*NODE_STATE, *NODE_LOAD, "inverse_mass", "entry", *NODE_FORCE)
+EDGE_WORDS = ("entry", "length", "ratio")
+TABLE_WORDS = ("rho", "sigma")
+
+
+@dataclass(frozen=True)
+class Map:
+    """Words and depth of each region for a circuit's capacities."""
+
+    parameters: Parameters
+
+    def words(self, region: Region) -> tuple[str, ...]:
+        if region == Region.MATERIAL:
+            return tuple(records.material(self.parameters.formats, self.parameters.tables))
+        names = {Region.CONTROL: ("register",), Region.NODE: NODE_WORDS, Region.EDGE: EDGE_WORDS}
+        return names.get(region, TABLE_WORDS)
+
+    def depth(self, region: Region) -> int:
+        p = self.parameters
+        return {
+            Region.CONTROL: len(Control),
+            Region.NODE: p.nodes,
+            Region.EDGE: p.rows,
+            Region.MATERIAL: p.materials,
+            Region.TABLE: p.tables << p.formats.damper_index.width,
+        }[region]
+
+    def lanes(self, region: Region) -> int:
+        """How many lanes an address of the region may name; a write to materials and tables goes to all."""
+        return 1 if region in (Region.CONTROL, Region.NODE) else self.parameters.lanes
+
+    def address(self, region: Region, word: int | str = 0, index: int = 0, lane: int = 0) -> int:
+        """Raises ValueError if the map has no such place."""
+        number = self.words(region).index(word) if isinstance(word, str) else word
+        limits = {"word": len(self.words(region)), "index": self.depth(region), "lane": self.lanes(region)}
+        for name, value in (("word", number), ("index", index), ("lane", lane)):
+            if not 0 <= value < limits[name]:
+                raise ValueError(f"{region.name} {name} must be below {limits[name]}, not {value}")
+        return join(region, number, index, lane)
+
+
+def join(region: int, word: int, index: int, lane: int) -> int:
+    """The address, index lowest."""
+    return ((region << LANE_BITS | lane) << WORD_BITS | word) << INDEX_BITS | index

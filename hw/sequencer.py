@@ -1,0 +1,125 @@
+"""The wavefront: which row of edges and which node may go next. No barrier between stages or steps."""
+
+from amaranth.hdl import Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from golden.rk4 import RK4
+
+STAGE_BITS = max(1, (RK4.stages - 1).bit_length())
+
+
+class Sequencer(wiring.Component):
+    """Issues rows (one edge for every lane) and nodes in the order of their lists, each as soon as it may.
+
+    A row of a stage may go when its nodes have been updated in the stage before; a node may go when all its edges have
+    been summed in its own stage. Rows and nodes go in the order of their lists, stage after stage, so that two counters
+    are all the synchronisation there is. A node's update needs only rows of its own stage, and a row only updates of
+    the stage before: any order of the lists comes to its end.
+
+    Members
+    -------
+    start : In(1), steps : In
+        Begin a run of ``steps`` steps, at least 1; only while not ``busy``.
+    busy : Out(1), steps_done : Out
+    rows, nodes : In
+        Lengths of the lists.
+    row_valid, row_last : In(1), row_nodes : In(1)
+        A row stands in front; it is its list's last; all its nodes are among the first ``updated`` of the list.
+    row_take : Out(1), row_stage : Out
+    node_valid, node_last : In(1), node_need : In
+        A node stands in front; it is its list's last; so many rows have to be summed before it.
+    node_take : Out(1), node_stage : Out
+    row_summed, node_updated : In(1)
+        A row's forces may be read; a node's new state has been written.
+    updated : Out
+        Nodes updated in the stage before the front row's, as far as that one is not finished.
+    row_waits : Out(1)
+        A row stands in front and may not go yet.
+    """
+
+    def __init__(self, *, row_bits: int, node_bits: int, step_bits: int = 32):
+        super().__init__(
+            {
+                "start": In(1),
+                "steps": In(step_bits),
+                "busy": Out(1),
+                "steps_done": Out(step_bits),
+                "rows": In(row_bits + 1),
+                "nodes": In(node_bits + 1),
+                "row_valid": In(1),
+                "row_last": In(1),
+                "row_nodes": In(1),
+                "row_take": Out(1),
+                "row_stage": Out(STAGE_BITS),
+                "row_waits": Out(1),
+                "node_valid": In(1),
+                "node_last": In(1),
+                "node_need": In(row_bits + 1),
+                "node_take": Out(1),
+                "node_stage": Out(STAGE_BITS),
+                "row_summed": In(1),
+                "node_updated": In(1),
+                "updated": Out(node_bits + 1),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        last_stage = RK4.stages - 1
+        rows_left, rows_over = Signal(len(self.steps)), Signal()
+        nodes_left, nodes_over = Signal(len(self.steps)), Signal()
+        row_lead = Signal(2)  # stages that the front row is ahead of the updates
+        sum_lead = Signal(2)  # stages that the sums are ahead of the front node
+        summed = Signal(len(self.rows))
+        update_stage = Signal(STAGE_BITS)
+
+        may_go = (row_lead == 0) | (row_lead == 1) & self.row_nodes
+        complete = (sum_lead != 0) | (summed >= self.node_need) & ~self.node_last
+        m.d.comb += [
+            self.row_take.eq(self.busy & ~rows_over & self.row_valid & may_go),
+            self.row_waits.eq(self.busy & ~rows_over & self.row_valid & ~may_go),
+            self.node_take.eq(self.busy & ~nodes_over & self.node_valid & complete),
+        ]
+
+        # The rows' stage goes up with the list's last row, the updates' stage with the list's last node
+        row_stage_done, update_stage_done = Signal(), Signal()
+        sum_stage_done, node_stage_done = Signal(), Signal()
+        m.d.comb += [
+            row_stage_done.eq(self.row_take & self.row_last),
+            update_stage_done.eq(self.node_updated & (self.updated + 1 == self.nodes)),
+            sum_stage_done.eq(self.row_summed & (summed + 1 == self.rows)),
+            node_stage_done.eq(self.node_take & self.node_last),
+        ]
+        m.d.sync += [
+            row_lead.eq(row_lead + row_stage_done - update_stage_done),
+            sum_lead.eq(sum_lead + sum_stage_done - node_stage_done),
+        ]
+        with m.If(row_stage_done):
+            m.d.sync += self.row_stage.eq(self.row_stage + 1)
+            with m.If(self.row_stage == last_stage):
+                m.d.sync += [self.row_stage.eq(0), rows_left.eq(rows_left - 1), rows_over.eq(rows_left == 1)]
+        with m.If(node_stage_done):
+            m.d.sync += self.node_stage.eq(self.node_stage + 1)
+            with m.If(self.node_stage == last_stage):
+                m.d.sync += [self.node_stage.eq(0), nodes_left.eq(nodes_left - 1), nodes_over.eq(nodes_left == 1)]
+        with m.If(self.row_summed):
+            m.d.sync += summed.eq(summed + 1)
+            with m.If(sum_stage_done):
+                m.d.sync += summed.eq(0)
+        with m.If(self.node_updated):
+            m.d.sync += self.updated.eq(self.updated + 1)
+            with m.If(update_stage_done):
+                m.d.sync += [self.updated.eq(0), update_stage.eq(update_stage + 1)]
+                with m.If(update_stage == last_stage):
+                    m.d.sync += [update_stage.eq(0), self.steps_done.eq(self.steps_done + 1)]
+                    with m.If(self.steps_done + 1 == self.steps):
+                        m.d.sync += self.busy.eq(0)
+
+        with m.If(self.start):
+            m.d.sync += [signal.eq(0) for signal in (self.row_stage, self.node_stage, update_stage, self.updated)]
+            m.d.sync += [signal.eq(0) for signal in (row_lead, sum_lead, summed, rows_over, nodes_over)]
+        with m.If(self.start):
+            m.d.sync += [self.busy.eq(1), self.steps_done.eq(0)]
+            m.d.sync += [rows_left.eq(self.steps), nodes_left.eq(self.steps)]
+        return m

@@ -1,0 +1,194 @@
+"""The node updater: one node per cycle, from the sums of forces to the next stage's position and velocity."""
+
+from functools import cached_property
+
+from amaranth.hdl import Cat, Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from golden import records
+from golden.datapath import node_graph
+from golden.graph import AXES
+
+from .blocks.memory import READ_LATENCY, BlockRam
+from .delay import DelayLines
+from .edge import fault_names
+from .lane import NODE_WORDS
+from .operations import shape
+from .parameters import Parameters
+from .pipe import Pipe, Schedule
+
+RESULTS = {"x_base": "x_base_next", "v_base": "v_base_next", "v": "v", "x_total": "x_total", "v_total": "v_total"}
+"""Where a node's memories get their next words from."""
+
+
+class NodeUpdater(wiring.Component):
+    """`golden.node.node` as a pipeline, with the memories of the nodes' own words.
+
+    Latency: a node's new state is on ``update_*`` ``latency`` cycles after it was issued. Throughput one node per cycle.
+
+    Members
+    -------
+    valid, node : In
+        The node that is issued.
+    mask : In
+        Which accumulators hold a force on it, two for each lane (first ends, second ends); read with the node.
+    stage_first, stage_last, stage_half, stage_double : In(1)
+    velocity_shift : In
+    sum<bank>_* : In
+        The sums of forces on the node, `READ_LATENCY` cycles after it was issued.
+    update, update_node, update_x_*, update_v_* : Out
+        As `hw.lane.Lane` takes them.
+    fault : Out
+        One bit for each name in ``faults``.
+    host_* : In / Out
+        Reads and writes of the host, only while no node is under way; see `hw.host`.
+    """
+
+    def __init__(self, parameters: Parameters):
+        self.parameters = parameters
+        fmt = parameters.formats
+        self.banks = 2 * parameters.lanes
+        self.faults = fault_names(self.graph)
+        self._mass = records.inverse_mass(fmt)
+        update = {"x": fmt.position, "v": fmt.velocity}
+        super().__init__(
+            {
+                "valid": In(1),
+                "node": In(parameters.node_bits),
+                "mask": In(self.banks),
+                **{f"stage_{bit}": In(1) for bit in ("first", "last", "half", "double")},
+                "velocity_shift": In(shape(fmt.exponent)),
+                **{f"sum{bank}_{axis}": In(shape(fmt.accumulator)) for bank in range(self.banks) for axis in AXES},
+                "update": Out(len(NODE_WORDS)),
+                "update_node": Out(parameters.node_bits),
+                **{f"update_{word}": Out(shape(update[word[0]])) for word in NODE_WORDS},
+                "fault": Out(len(self.faults)),
+                "host": In(1),
+                "host_index": In(parameters.index_bits),
+                "host_data": In(fmt.state),
+                "host_write_state": In(len(NODE_WORDS)),
+                "host_write_load": In(len(AXES)),
+                "host_write_mass": In(1),
+                **{f"host_{word}": Out(fmt.state) for word in NODE_WORDS},
+                **{f"host_{quantity}_{axis}": Out(fmt.state) for quantity in ("load", "force") for axis in AXES},
+                "host_mass": Out(fmt.state),
+            }
+        )
+
+    @cached_property
+    def graph(self):
+        return node_graph(self.parameters.formats, self.banks)
+
+    @cached_property
+    def schedule(self):
+        """Only the sums of forces come with the node."""
+        late = {name for name in self.graph.inputs if not name.startswith(("pull", "velocity_shift"))}
+        return Schedule(self.graph, self.parameters.cost, late=late, static={"velocity_shift"})
+
+    @property
+    def latency(self) -> int:
+        return READ_LATENCY + self.schedule.latency
+
+    def elaborate(self, platform):
+        m = Module()
+        self._m, self._lines = m, DelayLines(m)
+        inputs = {"velocity_shift": self.velocity_shift}
+        for bit in ("first", "last", "half", "double"):
+            name = f"stage_{bit}"
+            inputs[name] = self._later(getattr(self, name), self.schedule.arrival[name])
+        mask = self._later(self.mask, 0)
+        for bank in range(self.banks):
+            for axis in AXES:
+                inputs[f"pull{bank}_{axis}"] = pull = Signal(shape(self.parameters.formats.accumulator), name=f"pull{bank}_{axis}")
+                m.d.comb += pull.eq(Mux(mask[bank], getattr(self, f"sum{bank}_{axis}"), 0))
+        memories = self._memories(inputs)
+        pipe = Pipe(m, self.schedule, inputs, self._later(self.valid, 0))
+        self._write_back(pipe, memories)
+        m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.faults))
+        return m
+
+    def _later(self, value, cycle: int):
+        """What was issued, when its node is in ``cycle`` of the pipeline; its words are read before cycle 0."""
+        return self._lines.later(value, READ_LATENCY + cycle)
+
+    def _memory(self, name: str, width: int, arrival: int) -> BlockRam:
+        """A word per node, read for ``arrival``, or for the host."""
+        ram = BlockRam(width=width, depth=self.parameters.nodes)
+        self._m.submodules[name] = ram
+        address = self._later(self.node, arrival - READ_LATENCY)
+        self._m.d.comb += ram.address.eq(Mux(self.host, self.host_index, address))
+        return ram
+
+    def _host_writes(self, ram: BlockRam, strobe):
+        with self._m.If(self.host):
+            self._m.d.comb += [
+                ram.write.eq(strobe),
+                ram.write_address.eq(self.host_index),
+                ram.write_data.eq(self.host_data),
+            ]
+
+    def _memories(self, inputs):
+        memories, arrival = {}, self.schedule.arrival
+        for quantity, q in records.node_state(self.parameters.formats).items():
+            for axis in AXES:
+                name = f"{quantity}_{axis}"
+                memories[name] = ram = self._memory(f"node_{name}", q.width, arrival[name])
+                inputs[name] = self._cast(ram.data, q)
+        for axis in AXES:
+            q = self.parameters.formats.accumulator
+            ram = self._memory(f"load_{axis}", q.width, arrival[f"load_{axis}"])
+            inputs[f"load_{axis}"] = self._cast(ram.data, q)
+            self._host_writes(ram, self.host_write_load[AXES.index(axis)])
+            self._m.d.comb += getattr(self, f"host_load_{axis}").eq(ram.data)
+        low = 0
+        for part, q in self._mass.items():
+            name = f"inverse_mass_{part}"
+            ram = self._memory(name, q.width, arrival[name])
+            inputs[name] = self._cast(ram.data, q)
+            with self._m.If(self.host):
+                self._m.d.comb += [
+                    ram.write.eq(self.host_write_mass),
+                    ram.write_address.eq(self.host_index),
+                    ram.write_data.eq(self.host_data[low : low + q.width]),
+                ]
+            self._m.d.comb += self.host_mass[low : low + q.width].eq(ram.data)
+            low += q.width
+        return memories
+
+    def _cast(self, data, q):
+        return data.as_signed() if q.signed else data
+
+    def _write_back(self, pipe, memories):
+        m, done = self._m, self.schedule.latency
+        for quantity, result in RESULTS.items():
+            for axis in AXES:
+                ram = memories[f"{quantity}_{axis}"]
+                m.d.comb += [
+                    ram.write.eq(self._later(self.valid, done)),
+                    ram.write_address.eq(self._later(self.node, done)),
+                    ram.write_data.eq(pipe.output(f"{result}_{axis}", done)),
+                ]
+        for number, word in enumerate(NODE_WORDS):
+            quantity, axis = word.split("_")
+            base = memories[f"{quantity}_base_{axis}"]
+            strobe = self.host_write_state[number]
+            m.d.comb += [
+                self.update[number].eq(Mux(self.host, strobe, self._later(self.valid, done))),
+                getattr(self, f"update_{word}").eq(Mux(self.host, self.host_data, pipe.output(word, done))),
+                getattr(self, f"host_{word}").eq(base.data),
+            ]
+            self._host_writes(base, strobe)
+            if quantity == "v":
+                self._host_writes(memories[word], strobe)
+        m.d.comb += self.update_node.eq(Mux(self.host, self.host_index, self._later(self.node, done)))
+        for axis in AXES:
+            force = BlockRam(width=self.parameters.formats.state, depth=self.parameters.nodes)
+            m.submodules[f"force_{axis}"] = force
+            m.d.comb += [
+                force.write.eq(self._later(self.valid, done)),
+                force.write_address.eq(self._later(self.node, done)),
+                force.write_data.eq(pipe.output(f"force_{axis}", done)),
+                force.address.eq(self.host_index),
+                getattr(self, f"host_force_{axis}").eq(force.data),
+            ]
