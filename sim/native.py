@@ -22,9 +22,9 @@ CHUNK = 1_000_000
 
 
 @cache
-def compiled(fmt: Formats, tables: int):
-    """The program ``run`` for these formats and room for ``tables`` damper tables, and the names of its faults."""
-    files, faults = sources(fmt, tables)
+def compiled(fmt: Formats):
+    """The program ``run`` for these formats, and the names of its faults."""
+    files, faults = sources(fmt)
     path = library(files | {PROGRAM.name: PROGRAM.read_text()}, PROGRAM.name)
     run = ctypes.CDLL(str(path)).run
     integers = ndpointer(np.int64, flags="C_CONTIGUOUS")
@@ -48,7 +48,7 @@ class NativeMachine:
         self.image, self.faults = image, Counter()
         self.x, self.v, self.ratio = image.x.copy(), image.v.copy(), image.ratio.copy()
         self.force = np.zeros_like(image.x)
-        self._run, self._fault_names = compiled(image.formats, len(image.damper["rho_value"]))
+        self._run, self._fault_names = compiled(image.formats)
         self._inverse = words(image.inverse, records.inverse_word(image.formats))
         self._damper = words(image.damper, records.damper_word(image.formats))
         self.refresh()
@@ -71,34 +71,38 @@ class NativeMachine:
         ):
             if not np.all((index >= 0) & (index < count)):
                 raise IndexError(f"{what} must be 0 to {count - 1}, not {index.min()} to {index.max()}")
+        nodes, edges = image.nodes, len(image.edges)
+        self._size = nodes, edges, image.velocity_shift
         self._constant = [
-            integers(image.load),
-            words(image.inverse_mass, records.inverse_mass(fmt)),
-            integers(image.edges),
-            integers(image.edge_material),
-            integers(image.length),
+            integers(image.load, (nodes, 3)),
+            integers(words(image.inverse_mass, records.inverse_mass(fmt)), (nodes, 2)),
+            integers(image.edges, (edges, 2)),
+            integers(image.edge_material, (edges,)),
+            integers(image.length, (edges,)),
             words(contents, material),
             self._inverse,
             self._damper,
         ]
 
     def step(self, steps: int = 1):
-        self.x, self.v, self.ratio, self.force = state = [
-            np.array(s, np.int64, order="C") for s in (self.x, self.v, self.ratio, self.force)
-        ]
-        nodes, edges = len(self.x), len(self.ratio)
+        nodes, edges, _ = self._size
+        self.x, self.v, self.force = (integers(s, (nodes, 3)) for s in (self.x, self.v, self.force))
+        self.ratio = integers(self.ratio, (edges,))
+        state = self.x, self.v, self.ratio, self.force
         chunk = max(1, CHUNK // (RK4.stages * max(edges, 1)))
         for done in range(0, steps, chunk):
             counts = np.zeros(len(self._fault_names), np.int64)
-            size = nodes, edges, self.image.velocity_shift
-            self._run(min(chunk, steps - done), *size, *state, *self._constant, counts)
+            self._run(min(chunk, steps - done), *self._size, *state, *self._constant, counts)
             self.faults.update({name: int(n) for name, n in zip(self._fault_names, counts, strict=True) if n})
 
 
-def integers(x) -> np.ndarray:
-    return np.ascontiguousarray(x, np.int64)
+def integers(x, shape) -> np.ndarray:
+    """A copy of this shape: a program in C believes what it is told."""
+    copy = np.empty(shape, np.int64)
+    copy[...] = x
+    return copy
 
 
 def words(contents, record) -> np.ndarray:
     """The fields of each record side by side."""
-    return np.ascontiguousarray(np.stack([contents[name] for name in record], axis=-1), np.int64)
+    return np.stack([np.asarray(contents[name], np.int64) for name in record], axis=-1)

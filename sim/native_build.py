@@ -27,7 +27,7 @@ def library(files: dict[str, str], main: str, folder: Path = FOLDER) -> Path:
     """
     compiler = shutil.which("c++")
     if not compiler:
-        raise InputError("a C++ compiler (c++), for the integer model, is missing: install it (Debian: apt install g++)")
+        raise InputError("the integer model needs a C++ compiler (c++): install one (Debian: apt install g++)")
     version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
     key = hashlib.sha256(repr((sorted(files.items()), main, FLAGS, version)).encode()).hexdigest()[:16]
     built = folder / f"{Path(main).stem}-{key}.so"

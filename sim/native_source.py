@@ -1,4 +1,4 @@
-"""The C++ text of the datapath's graphs, for `sim/native.cpp` to include: one constant a node, under the node's name."""
+"""The C++ text of the datapath's graphs, for `sim/native.cpp` to include: one constant a node, under its name."""
 
 from golden import records
 from golden.datapath import edge_graph, node_graph
@@ -10,7 +10,7 @@ WIDEST = 63
 """Bits of the widest number, sign included: its rounding must fit an int64."""
 
 
-def sources(fmt: Formats, tables: int) -> tuple[dict[str, str], list[str]]:
+def sources(fmt: Formats) -> tuple[dict[str, str], list[str]]:
     """The included files (text by name) and the names of the faults in the order in which the program counts them.
 
     Raises
@@ -18,9 +18,9 @@ def sources(fmt: Formats, tables: int) -> tuple[dict[str, str], list[str]]:
     ValueError
         If a number of the datapath does not fit an int64.
     """
-    edge, node = edge_graph(fmt, tables), node_graph(fmt, banks=1)
+    edge, node = edge_graph(fmt, tables=1), node_graph(fmt, banks=1)  # the text is the same for any number of tables
     faults = sorted(_faults(edge) | _faults(node))
-    material, inverse_mass = records.material(fmt, tables), records.inverse_mass(fmt)
+    material, inverse_mass = records.material(fmt, tables=1), records.inverse_mass(fmt)
     stages = [RK4.stage(s) for s in range(RK4.stages)]
     common = {"velocity_shift": "common.velocity_shift"} | {f"stage_{bit}": f"stage_{bit}[stage]" for bit in stages[0]}
 
@@ -153,7 +153,7 @@ def _shifted(raw: int, source, target) -> int:
 def _table_field(node: Node) -> str:
     read = node.operands[0]
     table, word = read.detail
-    place = "0"
-    for index in read.operands:
+    place = _name(read.operands[0])
+    for index in read.operands[1:]:
         place = f"({place} << {index.fmt.width} | {_name(index)})"
     return f"common.{table}[{place} * {len(word)} + {list(word).index(node.detail)}]"
