@@ -67,8 +67,8 @@ def _held(scene: Scene) -> list[np.ndarray]:
 def _laws(scene: Scene):
     """Per edge (rho c1, kappa, delta), one for each extreme of the element's behaviour; equal ones once.
 
-    Held by a_min an edge is at its least stiff and its damping at its fastest; held by a_max it is slower than
-    that or than with a free ratio. At a_min = 0 no ratio rests: the natural length L pushes it away.
+    Held by a_min an edge is at its least stiff and its damping at its fastest; held by a_max it is slower
+    than that or than with a free ratio. At a_min = 0 no ratio rests: the natural length L pushes it away.
     """
     k, c1, c_max, c_min, f1, f2, a_min, a_max = (
         scene.per_edge(name) for name in ("k", "c1", "c_max", "c_min", "f1", "f2", "a_min", "a_max"))
