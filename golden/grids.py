@@ -33,8 +33,7 @@ def box(nodes, size, tetrahedra: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _grid(nodes, size, dim: int):
-    """Points, a function giving for an offset the node at that corner of each grid cell, and each grid cell's
-    parity.
+    """Points, the function that gives for an offset the node at that corner of every grid cell, and parities.
 
     The first axis runs fastest in the order of the points.
     """

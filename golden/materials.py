@@ -12,8 +12,7 @@ from golden.errors import InputError
 
 @dataclass(frozen=True)
 class Material:
-    """One three-element model: a Voigt part (k, c1) holding the ratio a of the length, in series with a
-    damper c2.
+    """One three-element model: a Voigt part (k, c1) with the part a of the length, in series with a damper c2.
 
     k in N/m, c1 and c2 in N s/m, forces f1 and f2 in N; the ratios have no unit. The damper is equation (7):
     c_max up to the force f1, c_min from f2 on, exponential between. A linear damper has c_max = c_min = c2
@@ -55,9 +54,9 @@ def decay(c_max, c_min, f1, f2):
 def solve_damper(c1, c_max, c_min, f1, f2, g) -> tuple[np.ndarray, np.ndarray]:
     """(sigma, rho) = (1 / (c1 + c2), c2 / (c1 + c2)) for the c2 of (7) at the force the edge really carries.
 
-    `g` is the trial force k (a l - L) + c1 dl/dt (N); all arguments broadcast. The force is |f| = rho(|f|)
-    |g|, that is |f| (1 + c1 / c2(|f|)) = |g|, whose left side rises with |f|: one root, and the branch it
-    lies in follows from |g| alone. c2 = inf gives sigma = 0 and rho = 1.
+    `g` is the trial force k (a l - L) + c1 dl/dt (N); all arguments broadcast. The force satisfies
+    |f| (1 + c1 / c2(|f|)) = |g|, whose left side rises with |f|: one root, and the branch it lies in follows
+    from |g| alone. c2 = inf gives sigma = 0 and rho = 1.
     """
     size = np.abs(np.asarray(g, dtype=float))
     c1, c_max, c_min, f1, f2, size = np.broadcast_arrays(c1, c_max, c_min, f1, f2, size)

@@ -18,10 +18,9 @@ FLAT = 1e-12  # a cell smaller than this part of its longest edge to the power o
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Points (N, dim) in m, cells (M, dim + 1) and edges (E, 2) of node indices, each edge once with i < j,
-    in order.
+    """Points (N, dim) in m; cells (M, dim + 1) and edges (E, 2) of node indices.
 
-    The nodes keep the order they were given in. Raises `InputError` when a point or an edge cannot belong to
+    Every edge is there once, with i < j, in ascending order; nodes keep the order they were given in. Raises `InputError` when a point or an edge cannot belong to
     an object. Build one with `from_cells`, `rectangle`, `box` or `read`.
     """
 
@@ -95,17 +94,16 @@ def from_cells(points, cells) -> Mesh:
 
 
 def rectangle(nodes, size) -> Mesh:
-    """Grid of (nx, ny) nodes on [0, width] x [0, height] (m), x fastest; the diagonals alternate like a
-    chessboard.
+    """Grid of (nx, ny) nodes on [0, width] x [0, height] (m), x fastest.
 
+    The diagonals alternate like a chessboard's fields, so that an even number of cells is its own mirror image.
     Raises `InputError` for fewer than 2 nodes a side or a size that is not positive.
     """
     return from_cells(*grids.rectangle(nodes, size))
 
 
 def box(nodes, size, tetrahedra: int = 5) -> Mesh:
-    """Grid of (nx, ny, nz) nodes on [0, x] x [0, y] x [0, z] (m), x fastest, each cell cut into 5 or 6
-    tetrahedra.
+    """Grid of (nx, ny, nz) nodes on [0, x] x [0, y] x [0, z] (m), x fastest, of 5 or 6 tetrahedra a cell.
 
     Five: one in the middle and four at the corners, neighbours mirrored so that their faces match. Six:
     around the same diagonal in every cell. Raises `InputError` as `rectangle` does, and for another number of
@@ -115,8 +113,7 @@ def box(nodes, size, tetrahedra: int = 5) -> Mesh:
 
 
 def read(path, scale: float = 1.0) -> Mesh:
-    """Mesh of the triangles or the tetrahedra in a file of any format meshio reads, coordinates times `scale`
-    (to m).
+    """Mesh of the triangles or the tetrahedra in a file that meshio reads; `scale` makes its unit metres.
 
     Beside tetrahedra their boundary (triangles, lines, vertices, as Gmsh writes) is passed over, and so are
     the lines and vertices beside triangles, which must lie in one plane of constant z. Raises `InputError`

@@ -51,7 +51,7 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
     Raises
     ------
     ValueError
-        If the branch starts below the octaves that the datapath normalises.
+        If the branch starts below the octaves that the datapath normalises, or is too steep for the table.
     """
     lowest = 2.0 ** (1 - fmt.trial_octaves)
     if g1 < lowest:
@@ -61,12 +61,17 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
     finest = fmt.octave.frac_bits
     per_octave = next(2**p for p in range(finest, -1, -1) if int(last * 2**p) - int(first * 2**p) < segments)
     start = np.floor(first * per_octave) / per_octave
+    used = int(last * per_octave) - int(first * per_octave) + 1
     places = start + np.arange(segments + 1) / per_octave
     g = lowest * octave_inverse(places)
     words = {}
     for name, curve, sign in (("rho", rho, -1), ("sigma", sigma, 1)):
         value, change = _lines(curve, g[:-1], g[1:])
-        shift = np.clip(-np.frexp(np.maximum(value, value + change))[1], 0, fmt.damper_shift.raw_max)
+        largest = np.maximum(value, value + change) * (1 + 4 * fmt.damper_value.lsb)  # both may round up
+        shift = np.clip(-np.frexp(largest)[1], 0, fmt.damper_shift.raw_max)
+        steepest = np.ldexp(np.abs(change), shift)[:used].max()
+        if steepest >= fmt.damper_slope.raw_max * fmt.damper_slope.lsb:
+            raise ValueError(f"{name} must change by less than 1/8 of itself in a segment, not {steepest:.2g}")
         words[f"{name}_value"] = _raw(np.ldexp(value, shift), fmt.damper_value)
         words[f"{name}_slope"] = _raw(np.ldexp(sign * change, shift), fmt.damper_slope)
         words[f"{name}_shift"] = shift.astype(np.int64)
