@@ -12,7 +12,7 @@ from golden.errors import InputError
 
 @dataclass(frozen=True)
 class Material:
-    """One three-element model: a Voigt part (k, c1) with the part a of the length, in series with a damper c2.
+    """One three-element model: a Voigt part (k, c1), a of the length, in series with a damper c2.
 
     k in N/m, c1 and c2 in N s/m, forces f1 and f2 in N; the ratios have no unit. The damper is equation (7):
     c_max up to the force f1, c_min from f2 on, exponential between. A linear damper has c_max = c_min = c2

@@ -20,8 +20,9 @@ FLAT = 1e-12  # a cell smaller than this part of its longest edge to the power o
 class Mesh:
     """Points (N, dim) in m; cells (M, dim + 1) and edges (E, 2) of node indices.
 
-    Every edge is there once, with i < j, in ascending order; nodes keep the order they were given in. Raises `InputError` when a point or an edge cannot belong to
-    an object. Build one with `from_cells`, `rectangle`, `box` or `read`.
+    Every edge is there once, with i < j, in ascending order; nodes keep the order they were given in. Raises
+    `InputError` when a point or an edge cannot belong to an object. Build one with `from_cells`, `rectangle`,
+    `box` or `read`.
     """
 
     points: np.ndarray
@@ -96,8 +97,8 @@ def from_cells(points, cells) -> Mesh:
 def rectangle(nodes, size) -> Mesh:
     """Grid of (nx, ny) nodes on [0, width] x [0, height] (m), x fastest.
 
-    The diagonals alternate like a chessboard's fields, so that an even number of cells is its own mirror image.
-    Raises `InputError` for fewer than 2 nodes a side or a size that is not positive.
+    The diagonals alternate like a chessboard's fields, so that an even number of cells is its own mirror
+    image. Raises `InputError` for fewer than 2 nodes a side or a size that is not positive.
     """
     return from_cells(*grids.rectangle(nodes, size))
 
