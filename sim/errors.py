@@ -1,0 +1,20 @@
+"""Errors of co-simulation: whose they are, and which scene they are about."""
+
+from contextlib import contextmanager
+
+from golden.errors import InputError
+
+
+class InternalError(RuntimeError):
+    """Two models that must agree do not: a bug of this project."""
+
+
+@contextmanager
+def about(scene):
+    """Put the scene's file before the messages of errors that its numbers cause."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{scene.path or scene.name}: {error}") from None
+    except InternalError as error:
+        raise InternalError(f"{scene.path or scene.name}: {error}") from None

@@ -1,0 +1,54 @@
+"""Whether a scene's numbers have a place in the circuit's: refused by name before anything runs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from golden import records
+from golden.errors import InputError
+from golden.formats import Formats
+from golden.problem import Scene
+from sim import image
+from sim.image import Loaded
+
+
+def load(scene: Scene, edge_order: np.ndarray | None = None) -> Loaded:
+    """`sim.image.load`, and every phase's numbers tried out. Raises `InputError` naming what doesn't fit."""
+    _check_speed(scene)
+    try:
+        loaded = image.load(scene, edge_order=edge_order)
+        for phase in scene.phases[::-1]:  # the first one last: it stays
+            loaded.start(phase, loaded.image.v)
+            _check_masses(loaded)
+    except InputError:
+        raise
+    except (ValueError, OverflowError) as error:
+        raise InputError(f"the scene must have numbers that the circuit can hold: {error}") from None
+    record = records.material(loaded.image.formats, len(loaded.image.damper["rho_value"]))
+    for material, fields in zip(scene.materials, loaded.image.materials, strict=True):
+        _check(record, fields, f"materials.{material.name} must have coefficients")
+    return loaded
+
+
+def _check_speed(scene: Scene) -> None:
+    """A node must not go further in a step than the displacement format reaches, whatever the velocity's unit."""
+    limit = 2.0 ** (Formats().displacement.int_bits - 1) * scene.size / scene.dt
+    for n, phase in enumerate(scene.phases):
+        fastest = np.abs(phase.velocity[phase.driven]).max(initial=0)
+        if fastest >= limit:
+            raise InputError(f"phases[{n}].driven must have velocities below {limit:.3g} m/s, not {fastest:.3g}: "
+                             "the circuit moves a node by less than a quarter of the object's size in a step")
+
+
+def _check_masses(loaded: Loaded) -> None:
+    record = records.inverse_mass(loaded.image.formats)
+    for n, node in enumerate(loaded.node_order):
+        fields = {name: values[n] for name, values in loaded.image.inverse_mass.items()}
+        _check(record, fields, f"mass must give node {node} a factor")
+
+
+def _check(record, fields, what: str) -> None:
+    try:
+        records.pack(record, fields)
+    except ValueError as error:
+        raise InputError(f"{what} that the circuit can hold, beside the scene's other forces: {error}") from None

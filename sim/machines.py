@@ -1,0 +1,90 @@
+"""The integer machines behind one face: NumPy model, compiled model, simulated circuit.
+
+A machine has the attributes ``x, v`` (N, 3), ``ratio`` (E,), ``force`` (N, 3), int64 in the circuit's order, and
+``faults`` (name -> count); ``restart(v)`` takes up the image's loads and masses and these velocities, ``step(n)``
+runs n steps.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from golden.errors import InputError
+from golden.image import Image
+from golden.machine import Machine
+from sim.errors import InternalError
+
+BUILD = Path(__file__).parents[1] / "build" / "rtl"
+ENGINES = "native", "numpy"
+
+
+class NumpyMachine(Machine):
+    """The reference: `golden.machine.Machine`, slow."""
+
+    def restart(self, v: np.ndarray):
+        self.v = v.copy()
+        self.refresh()
+
+
+@contextmanager
+def integer_model(image: Image, engine: str):
+    if engine == "numpy":
+        yield NumpyMachine(image)
+    else:
+        from sim.native import NativeMachine
+
+        yield NativeMachine(image)
+
+
+def parameters(lanes: int):
+    """The circuit that is simulated. Raises `InputError` for an impossible number of lanes."""
+    from hw.parameters import Parameters
+
+    try:
+        return Parameters(lanes=lanes)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def check_room(image: Image, lanes: int):
+    """Raise `InputError` for an object that is larger than the circuit."""
+    from sim.program import Program
+
+    Program(image, parameters(lanes))
+
+
+@contextmanager
+def circuit(image: Image, lanes: int, waves: Path | None):
+    from sim.rtl import RtlMachine  # Amaranth and Verilator are slow to load
+
+    machine = RtlMachine(image, parameters=parameters(lanes), folder=BUILD, waves=waves)
+    try:
+        yield machine
+    finally:
+        machine.close()
+
+
+class Witness:
+    """Computes single steps of another machine again, with the NumPy model, and insists on the same bits."""
+
+    def __init__(self, image: Image):
+        self._model = NumpyMachine(image)
+
+    def step(self, machine, number: int):
+        """Let ``machine`` do step ``number``. Raises `InternalError` when the NumPy model gets another result."""
+        model, faults = self._model, machine.faults.copy()
+        model.x, model.ratio = machine.x.copy(), machine.ratio.copy()
+        model.restart(machine.v)
+        model.faults.clear()
+        machine.step(1)
+        model.step(1)
+        differing = [name for name in ("x", "v", "ratio", "force")
+                     if not np.array_equal(getattr(model, name), getattr(machine, name))]
+        if machine.faults - faults != model.faults:
+            differing.append("faults")
+        if differing:
+            raise InternalError(f"the compiled integer model and the NumPy model differ in {', '.join(differing)} "
+                                f"after step {number}")
