@@ -1,0 +1,116 @@
+"""The command line: ``python -m sim run SCENE ...`` and ``python -m sim compare SCENE ...``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from functools import partial
+
+from golden import scene as scenes
+from golden.errors import InputError
+from sim.errors import InternalError, about
+from sim.run import BACKENDS, LANES
+
+
+class Parser(argparse.ArgumentParser):
+    """One line an error, as for every other mistake of the user's."""
+
+    def error(self, message):
+        raise InputError(f"{message} (see {self.prog} --help)")
+
+
+def parser() -> Parser:
+    main = Parser(prog="python -m sim", description="Run scenes on float64, on integers and on the simulated circuit.")
+    commands = main.add_subparsers(dest="command", required=True, metavar="run|compare")
+
+    one = commands.add_parser("run", help="run one scene on one backend")
+    one.add_argument("scene", metavar="SCENE", help="a scene file (TOML)")
+    one.add_argument("--backend", required=True, choices=BACKENDS,
+                     help="float64, the circuit's integer model, or its Verilog under Verilator")
+    one.add_argument("--lanes", type=lanes, metavar="P", help=f"edge processors of the circuit (rtl; {LANES})")
+    one.add_argument("--waves", nargs="?", const="fst", choices=("fst", "vcd"), metavar="fst|vcd",
+                     help="write the circuit's waveforms as well (rtl; fst)")
+    one.add_argument("--out", required=True, metavar="DIR", help="folder for trajectory.npz and summary.json")
+    one.set_defaults(run=run)
+
+    many = commands.add_parser("compare", help="run scenes on all backends side by side and report the differences")
+    many.add_argument("scenes", nargs="+", metavar="SCENE", help="scene files (TOML)")
+    many.add_argument("--lanes", type=lanes, default=LANES, metavar="P",
+                      help=f"edge processors of the circuit ({LANES})")
+    many.add_argument("--out", default="build/report", metavar="DIR",
+                      help="folder for compare.json and index.html (build/report)")
+    many.set_defaults(run=compare)
+
+    for command in (one, many):
+        command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
+    return main
+
+
+def lanes(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, not {text!r}")
+    return int(text)
+
+
+def run(args) -> int:
+    from sim import folder, store
+    from sim.run import run
+
+    for option in ("lanes", "waves"):
+        if getattr(args, option) and args.backend != "rtl":
+            raise InputError(f"--{option} must go with --backend rtl, not {args.backend}")
+    scene = scenes.load(args.scene)
+    out = folder.claim(args.out, args.force)
+    for suffix in ("fst", "vcd"):  # of an earlier run
+        (out / f"waves.{suffix}").unlink(missing_ok=True)
+    with about(scene):
+        result = run(scene, args.backend, lanes=args.lanes or LANES, waves=args.waves and out / f"waves.{args.waves}")
+    store.save(scene, result, out)
+    print(f"{scene.name}: {scene.steps} steps on {args.backend} in {result.seconds:.1f} s, "
+          f"{len(scene.frames)} frames in {out / 'trajectory.npz'}")
+    if result.faults:
+        print(f"error: saturated: {', '.join(result.faults)}", file=sys.stderr)
+    return 1 if result.faults else 0
+
+
+def compare(args) -> int:
+    from sim import batch, folder, limits, machines, report, terminal
+    from sim.compare import shortcomings
+
+    loaded = [scenes.load(path) for path in args.scenes]
+    names = [scene.name for scene in loaded]
+    if twice := {name for name in names if names.count(name) > 1}:
+        raise InputError(f"scenes must have names of their own, not {min(twice)!r} twice")
+    for scene in loaded:
+        with about(scene):
+            machines.check_room(limits.load(scene).image, args.lanes)
+    out = folder.claim(args.out, args.force)
+    with terminal.progress(loaded) as shown:
+        sections = batch.over_scenes(partial(report.section, lanes=args.lanes, folder=out), loaded, shown)
+    entries = [section.entry for section in sections]
+    report.write(sections, out)
+    terminal.print_table(entries)
+    wrong = [(entry["scene"], reason) for entry in entries for reason in shortcomings(entry)]
+    for name, reason in wrong:
+        print(f"error: {name}: {reason}", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+def main(arguments=None) -> int:
+    """Exit code: 0, 1 when the models disagree or something saturated, 2 for a mistake of the user's."""
+    try:
+        args = parser().parse_args(arguments)
+        return args.run(args)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except InternalError as error:
+        print(f"internal error: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,51 @@
+"""What a comparison shows on the terminal: progress while it runs, then one table."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+
+from golden.problem import Scene
+from sim.compare import power, shortcomings
+from sim.run import BACKENDS
+
+
+@contextmanager
+def progress(scenes: list[Scene]):
+    """Bars on stderr; gives ``shown(number, backend, steps done)``, or None where stderr is not a terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = [TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[doing]:5}"), TimeElapsedColumn()]
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
+        tasks = [bars.add_task(scene.name, total=len(BACKENDS) * scene.steps, start=False, doing="")
+                 for scene in scenes]
+
+        def shown(number: int, backend: str, steps: int) -> None:
+            bars.start_task(tasks[number])
+            before = BACKENDS.index(backend) * scenes[number].steps
+            bars.update(tasks[number], completed=before + steps, doing=backend)
+
+        yield shown
+
+
+HEAD = "scene", "dim", "nodes", "edges", "steps", "rtl=fixed", "max dx", "allowed", "max da", "saturated", "s", ""
+
+
+def print_table(entries: list[dict]) -> None:
+    """One line a scene, on stdout, below 100 columns unless a scene has a very long name."""
+    rows = [HEAD]
+    for e in entries:
+        rows.append((
+            e["scene"], *(str(e[key]) for key in ("dim", "nodes", "edges", "steps")),
+            "yes" if e["rtl_equals_fixed"] else "NO", power(e["max_dx_rel"]), power(e["bound"]), power(e["max_da"]),
+            str(e["saturations"]), f"{e['seconds']:.0f}", "FAILS" if shortcomings(e) else "passes"))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    print(f"circuit with {entries[0]['lanes']} lanes against integer model (rtl=fixed: every bit of every frame), "
+          "integer model\nagainst float64 (max dx: largest position difference / size of the object; "
+          "max da: of a ratio)\n")
+    for row in rows:
+        print("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip())
