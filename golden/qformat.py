@@ -12,7 +12,7 @@ class Q:
     steps of 2**-17, and ``Q(0, 18, signed=False)`` is 18 bits wide and holds [0, 1) in steps of 2**-18. Either
     count may be negative, as long as their sum, the width, is not.
 
-    The operators give the smallest format that holds every exact result: nothing rounds, nothing overflows.
+    The operators give a format that holds every exact result: nothing rounds, nothing overflows.
 
     Raises
     ------
@@ -100,7 +100,7 @@ BIT = unsigned(1, 0)
 
 def smallest(raw: int) -> Q:
     """The smallest integer format that holds ``raw``."""
-    return Q(raw.bit_length() + 1, 0) if raw < 0 else unsigned(max(raw.bit_length(), 1), 0)
+    return Q((~raw).bit_length() + 1, 0) if raw < 0 else unsigned(max(raw.bit_length(), 1), 0)
 
 
 def count(most: int) -> Q:
