@@ -117,10 +117,10 @@ def damper(fmt, tables, material, size, g, g_shift):
     rho_middle = word.rho_value - word.rho_slope * fraction
     sigma_middle = word.sigma_value + word.sigma_slope * fraction
 
-    below, inside = size < material.g1, size < material.g2
+    below, between = size < material.g1, size < material.g2
 
     def branch(low, middle, high):
-        return below.select(low, inside.select(middle, high))
+        return below.select(low, between.select(middle, high))
 
     rho = branch(material.rho_low, rho_middle, material.rho_high).to(fmt.mantissa)
     rho_shift = branch(material.rho_low_shift, word.rho_shift, material.rho_high_shift)

@@ -162,7 +162,7 @@ class Formats:
         so it has no name and its saturation is no fault."""
         return unsigned(self.damper_index.width, self.damper_fraction.width)
 
-    octave = unsigned(5, 7, name="octave", unit="octave")
+    octave = unsigned(5, 9, name="octave", unit="octave")
     """A place on the logarithmic axis of |g|: octaves, and the finest segments of one."""
 
     coarseness = unsigned(3, 0, name="coarseness", unit="log2")
