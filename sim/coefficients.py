@@ -74,7 +74,7 @@ def coefficients(
                 sigma=lambda g: np.ldexp(creep * branch(g * full)[1], creep_shift),
             )
         except ValueError as error:
-            raise InputError(f"materials.{material.name}.f1 must be nearer to the forces that occur: {error}") from error
+            raise InputError(f"materials.{material.name}.f1 must be nearer to the forces that occur: {error}") from None
 
     k, k_shift = coefficient(material.k * units.size / full, formats)
     c, c_shift = coefficient(material.c1 * units.velocity / full, formats)

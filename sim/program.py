@@ -20,7 +20,7 @@ class Program:
     Raises
     ------
     InputError
-        If the circuit is too small for the image, or made for other formats.
+        If the circuit is too small for the image, or made for other formats, or a node has too many edges.
     """
 
     def __init__(self, image: Image, parameters: Parameters):
@@ -34,6 +34,10 @@ class Program:
         ):
             if used > room:
                 raise InputError(f"{name} of the object must be at most {room} for this circuit, not {used}")
+        fmt, busiest = image.formats, np.bincount(image.edges.ravel()).max()
+        most = fmt.accumulator.raw_max // -fmt.force.raw_min
+        if busiest > most:
+            raise InputError(f"edges at one node must be at most {most}, or a sum of forces may overflow, not {busiest}")
         if image.formats != parameters.formats:
             raise InputError(f"formats of the object must be the circuit's {parameters.formats}, not {image.formats}")
 

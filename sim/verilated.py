@@ -17,7 +17,11 @@ FLAGS = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "-Wno-lint", "-Wno-
 COMPILER = ("c++", "-std=c++17", "-fPIC", "-w")
 FAST, SLOW = "-O1", "-O0"
 """What runs every cycle (-O2 runs a tenth faster and builds twice as long), and what runs once."""
-TRACES = {"vcd": ("--trace-vcd", "verilated_vcd_c.cpp", ()), "fst": ("--trace-fst", "verilated_fst_c.cpp", ("-lz", "-llz4"))}
+TRACES = {
+    "vcd": ("--trace-vcd", "verilated_vcd_c.cpp", ()),
+    "fst": ("--trace-fst", "verilated_fst_c.cpp", ("-lz", "-llz4")),
+}
+"""Waveforms: Verilator's option, the part of its runtime, the libraries that one needs."""
 
 
 def tools() -> dict[str, str]:
@@ -68,7 +72,8 @@ def _part(name: str, text: str, folder: Path) -> Path:
         if missing:
             with _workshop(folder) as work:
                 (work / f"{name}.v").write_text(text)
-                _run(["verilator", "--cc", f"{name}.v", "--top-module", name, "--lib-create", name, "-Mdir", ".", *FLAGS], work)
+                command = ["verilator", "--cc", f"{name}.v", "--top-module", name, "--lib-create", name, "-Mdir", "."]
+                _run([*command, *FLAGS], work)
                 _compile([*work.glob(f"V{name}*.cpp"), work / f"{name}.cpp"], work)
                 keep = work / "keep"
                 keep.mkdir()

@@ -1,0 +1,73 @@
+"""The README is true: its tables are what the code gives now, its scene runs, its commands exist."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from golden import model, scene
+from hw.docs import TABLES, updated
+from hw.parameters import Parameters
+from sim.__main__ import parser
+
+ROOT = Path(__file__).resolve().parent.parent
+README = (ROOT / "README.md").read_text()
+
+
+def blocks(language: str = "") -> list[str]:
+    fenced = re.findall(r"^```(\w*)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+    return [text for name, text in fenced if name == language]
+
+
+def test_tables_are_fresh():
+    assert updated(README) == README, "run `python -m hw docs`"
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_without_markers_is_named(name):
+    message = f"the text must have the markers of the table {name!r}, but has not"
+    with pytest.raises(ValueError, match=re.escape(message)):
+        updated(README.replace(f"<!-- end of {name} -->", ""))
+
+
+def test_a_stale_table_is_noticed():
+    stale = README.replace("| position | Q3.33 |", "| position | Q3.32 |")
+    assert stale != README
+    assert updated(stale) == README
+
+
+def test_other_lanes_change_the_latency_table_only_where_they_must():
+    four, one = (TABLES["latency"](Parameters(lanes=lanes)).splitlines() for lanes in (4, 1))
+    changed = [a.split("|")[1:3] for a, b in zip(four, one, strict=True) if a != b]
+    assert [of.strip() for of, _ in changed] == ["node", "stage"]  # fewer sums to add up
+
+
+def test_the_scene_runs(tmp_path):
+    (text,) = blocks("toml")
+    file = tmp_path / "my.toml"
+    file.write_text(text)
+    example = scene.load(file)
+    assert len(example.frames) >= 60
+    run = model.simulate(example)
+    height = run.x[:, :, 1].max(axis=1)
+    assert height.min() < 0.076 < 0.08 < height[-1] < 0.097  # pressed, and back part of the way
+
+
+def test_sim_commands_parse():
+    lines = [line for block in blocks() for line in block.splitlines() if "python -m sim" in line]
+    assert len(lines) >= 2
+    for line in lines:
+        parser().parse_args(shlex.split(line)[3:])
+
+
+def test_make_targets_exist():
+    targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    named = set(re.findall(r"(?:`|^)make ([a-z]+)", README, re.MULTILINE))
+    assert {"test", "verilog", "lint", "help"} <= named <= targets
+
+
+def test_files_and_folders_exist():
+    named = re.findall(r"`((?:golden|hw|sim|scenes|tests|docs)/[\w./]*)`", README)
+    for path in named + re.findall(r"\]\(([\w./]+)\)", README):
+        assert (ROOT / path).exists(), path
