@@ -36,6 +36,7 @@ class Accumulator(wiring.Component):
         self._nodes, self._subtract = nodes, subtract
         bits = max(1, (nodes - 1).bit_length())
         width = formats.accumulator.width
+        self.kind = f"accumulator_{'subtract' if subtract else 'add'}"
         super().__init__(
             {
                 "valid": In(1),
@@ -52,7 +53,8 @@ class Accumulator(wiring.Component):
         # The force under way: k cycles after its announcement
         valid, node, first = [self.valid], [self.node], [self.first]
         for k in range(1, READ_LATENCY + WRITTEN + 1):
-            for line, name in ((valid, "valid"), (node, "node"), (first, "first")):
+            lines = [(valid, "valid"), (node, "node")] + ([(first, "first")] if k <= READ_LATENCY else [])
+            for line, name in lines:
                 register = Signal.like(line[0], name=f"{name}_{k}", reset_less=name != "valid")
                 m.d.sync += register.eq(line[-1])
                 line.append(register)

@@ -56,12 +56,12 @@ class Core(wiring.Component):
         )
 
     def _check(self):
-        """An edge's own words must be back before it can come again; the way through its nodes is longer."""
+        """An edge's own words must be back before its nodes are: then it may come again, or the run is over."""
         datapath = self.datapath
         loop = latency(datapath) + self.updater.latency
         for word, output in NEXT.items():
             written = READ_LATENCY + datapath.ready(output)
-            if written >= loop + datapath.schedule.arrival[f"edge_{word}"]:
+            if written > loop:
                 raise ValueError(f"the edge's {word} must be written within {loop} cycles, not after {written}")
 
     def elaborate(self, platform):
@@ -202,7 +202,7 @@ class Core(wiring.Component):
         word, lane = (self._lines.later(signal, READ_LATENCY) for signal in (host.word, host.lane))
         reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
         reads += [updater.host_mass, self._node_entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
-        m.d.comb += host.words[Region.NODE].eq(Array(reads)[word])
+        m.d.comb += host.node_word.eq(Array(reads)[word])
 
         edges, materials, tables = [], [], []
         for number, (port, entry) in enumerate(zip(self._lanes, self._edge_entries, strict=True)):
@@ -222,8 +222,8 @@ class Core(wiring.Component):
             materials.append(material)
             half = len(port.host_table) // 2
             tables.append(Mux(word[0], port.host_table[half:], port.host_table[:half]))
-        for region, choices in ((Region.EDGE, edges), (Region.MATERIAL, materials), (Region.TABLE, tables)):
-            m.d.comb += host.words[region].eq(Array(choices)[lane])
+        for port, choices in ((host.edge_word, edges), (host.material_word, materials), (host.table_word, tables)):
+            m.d.comb += port.eq(Array(choices)[lane])
         for name in ("request", "write", "address", "write_data"):
             m.d.comb += getattr(host, name).eq(getattr(self, name))
         for name in ("answer", "error", "read_data"):

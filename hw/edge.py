@@ -101,7 +101,8 @@ class EdgeProcessor(wiring.Component):
     def _inverse(self, m):
         fmt = self.datapath.formats
         word, contents = records.inverse_word(fmt), inverse_table(fmt)
-        rows = [records.pack(word, dict(zip(contents, row, strict=True))) for row in zip(*contents.values(), strict=True)]
+        columns = zip(*contents.values(), strict=True)
+        rows = [records.pack(word, dict(zip(contents, column, strict=True))) for column in columns]
 
         def lookup(index):
             m.submodules.inverse_table = rom = BlockRam(width=records.width(word), depth=len(rows), init=rows)

@@ -1,10 +1,11 @@
 """Reads a list again and again, ahead of whoever works it off."""
 
-from amaranth.hdl import Cat, Module, ResetInserter, Signal
-from amaranth.lib import fifo, wiring
+from amaranth.hdl import Cat, Module, Signal
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from .blocks.memory import READ_LATENCY
+from .blocks.queue import Queue
 
 
 class Fetch(wiring.Component):
@@ -26,6 +27,7 @@ class Fetch(wiring.Component):
 
     def __init__(self, *, index_bits: int, width: int):
         self._width = width
+        self.kind = f"fetch_{width}"
         super().__init__(
             {
                 "flush": In(1),
@@ -44,8 +46,7 @@ class Fetch(wiring.Component):
         m = Module()
         depth = 4 * READ_LATENCY
         entry = Cat(self.word, self.last, self.index)
-        queue = fifo.SyncFIFO(width=len(entry), depth=depth)
-        m.submodules.queue = ResetInserter(self.flush)(queue)
+        m.submodules.queue = queue = Queue(width=len(entry), depth=depth)
         under_way = Signal(range(depth + 1))  # entries asked for and not yet taken
         ask = Signal()
         m.d.comb += ask.eq((under_way != depth) & ~self.flush)
@@ -66,10 +67,11 @@ class Fetch(wiring.Component):
             m.d.sync += [tag_next.eq(tag), arrived_next.eq(arrived & ~self.flush)]
             tag, arrived = tag_next, arrived_next
         m.d.comb += [
-            queue.w_en.eq(arrived & ~self.flush),
-            queue.w_data.eq(Cat(self.data, tag)),
-            self.valid.eq(queue.r_rdy),
-            entry.eq(queue.r_data),
-            queue.r_en.eq(self.take),
+            queue.flush.eq(self.flush),
+            queue.put.eq(arrived),
+            queue.data_in.eq(Cat(self.data, tag)),
+            self.valid.eq(queue.valid),
+            entry.eq(queue.data),
+            queue.take.eq(self.take),
         ]
         return m

@@ -36,8 +36,8 @@ class HostPort(wiring.Component):
         Of the access that is going on, to the memories.
     strobe : Out
         One bit a region: it is a write to that region.
-    words : In
-        What each region's memories hold at the access's address, `READ_LATENCY` cycles later.
+    <region>_word : In
+        What the region's memories hold at the access's address, `READ_LATENCY` cycles later.
     start, steps : Out
     busy, cycles, rows_issued, row_waits, steps_done, fault : In
     rows, nodes, velocity_shift : Out
@@ -61,7 +61,7 @@ class HostPort(wiring.Component):
                 "word": Out(WORD_BITS),
                 "lane": Out(LANE_BITS),
                 "strobe": Out(len(Region)),
-                "words": In(state).array(len(Region)),
+                **{word_of(region): In(state) for region in Region if region != Region.CONTROL},
                 "start": Out(1),
                 "steps": Out(32),
                 "busy": In(1),
@@ -78,8 +78,10 @@ class HostPort(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        request, write = Signal(), Signal()
-        address, data = Signal(ADDRESS_BITS), Signal.like(self.write_data)
+        request = Signal(name="request_now")
+        write = Signal(name="write_now")
+        address = Signal(ADDRESS_BITS, name="address_now")
+        data = Signal.like(self.write_data, name="data_now")
         m.d.sync += [request.eq(self.request), write.eq(self.write)]
         m.d.sync += [address.eq(self.address), data.eq(self.write_data)]
 
@@ -93,8 +95,9 @@ class HostPort(wiring.Component):
         with m.Switch(region):
             for r in Region:
                 with m.Case(r):
-                    inside = (index < self._map.depth(r)) & (word < len(self._map.words(r))) & (lane < self._map.lanes(r))
-                    m.d.comb += allowed.eq(inside & self._permitted(r, write, index, word, data))
+                    limits = self._map.depth(r), len(self._map.words(r)), self._map.lanes(r)
+                    inside = [place < limit for place, limit in zip((index, word, lane), limits, strict=True)]
+                    m.d.comb += allowed.eq(Cat(*inside).all() & self._permitted(r, write, index, word, data))
         go = Signal()
         m.d.comb += go.eq(request & allowed)
 
@@ -116,7 +119,7 @@ class HostPort(wiring.Component):
             m.d.sync += tag_next.eq(tag)
             tag = tag_next
         register = self._control_reads(m, index, refused)
-        words = [register, *(self.words[r] for r in Region if r != Region.CONTROL)]
+        words = [register, *(getattr(self, word_of(r)) for r in Region if r != Region.CONTROL)]
         m.d.sync += [
             self.answer.eq(tag[0]),
             self.error.eq(tag[1]),
@@ -187,3 +190,8 @@ class HostPort(wiring.Component):
             m.d.sync += register_next.eq(register)
             register = register_next
         return register
+
+
+def word_of(region: Region) -> str:
+    """The port for what a region's memories hold."""
+    return f"{region.name.lower()}_word"

@@ -89,7 +89,7 @@ class Lane(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        m.submodules.edge = self._edge = edge = EdgeProcessor(self.datapath)
+        m.submodules.edge_processor = self._edge = edge = EdgeProcessor(self.datapath)
         self._m, self._ready, self._arrival = m, self.datapath.ready, self.datapath.schedule.arrival
         self._lines = {}
         self._nodes()

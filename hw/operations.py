@@ -6,6 +6,9 @@ registered or not. ``wire(value)`` gives a value that is used more than once a s
 says it once.
 """
 
+import functools
+import operator
+
 from amaranth.hdl import Cat, Const, Mux, Shape, Value
 
 from golden.qformat import Q
@@ -13,6 +16,19 @@ from golden.qformat import Q
 
 def shape(q: Q) -> Shape:
     return Shape(q.width, q.signed)
+
+
+def negative(x: Value) -> Value:
+    return x[-1] if x.shape().signed else Const(0)
+
+
+def either(bit: Value, yes: Value, no: Value) -> Value:
+    """``Mux``, which is nothing where the bit is known to be 0."""
+    return no if never(bit) else Mux(bit, yes, no)
+
+
+def never(bit: Value) -> bool:
+    return isinstance(bit, Const) and not bit.value
 
 
 def aligned(*operands):
@@ -47,7 +63,7 @@ def select(wire, node, bit, yes, no):
 
 
 def absolute(wire, node, a):
-    yield (Mux(a < 0, -a, a),)
+    yield (Mux(negative(a), -a, a),)
 
 
 def lead(wire, node, *vector):
@@ -66,7 +82,7 @@ def _leading_zeros(bits: Value) -> Value:
         return ~bits
     half = 1 << (width - 1).bit_length() - 1
     upper, lower = bits[width - half :], bits[: width - half]
-    return Mux(upper == 0, half + _leading_zeros(lower), _leading_zeros(upper))
+    return Mux(upper.any(), _leading_zeros(upper), half + _leading_zeros(lower))
 
 
 def shift_left(wire, node, x, count):
@@ -92,27 +108,40 @@ def shift_right(wire, node, x, count):
     source, target = node.operands[0].fmt, node.fmt
     x = x << 1 + max(0, target.frac_bits - source.frac_bits)  # one bit more than the result, to round with
     drop = max(0, source.frac_bits - target.frac_bits)
-    bits = (len(x) - 1).bit_length()  # a longer shift leaves nothing
+    bits = (len(x) - 1).bit_length()
     amount = count[: min(bits, len(count))]
-    far = (count >> bits) != 0
-    negative = count < 0
+    left = negative(count)
+    beyond = left if never(left) else left & x.any()
+    far = ~left & count[bits:].any() if bits < len(count) else Const(0)  # so far that it leaves nothing
     for bit in reversed(range(3, len(amount))):
         x = wire(Mux(amount[bit], x >> (1 << bit), x))
-    x, amount, far, beyond = yield x, amount[:3], far & ~negative, negative & (x != 0)
+    x, amount, far, beyond = yield x, amount[:3], far, beyond
     for bit in reversed(range(len(amount))):
         x = wire(Mux(amount[bit], x >> (1 << bit), x))
-    x = Mux(far, 0, x) >> drop
-    x, beyond, below = yield x, beyond, x < 0
+    x = either(far, Const(0, x.shape()), x) >> drop
+    x, beyond, below = yield x, beyond, Const(0) if never(beyond) else negative(x)
     result, fault = _saturate(target, wire((x + 1) >> 1), x >> 1)
-    extreme = Mux(below, Const(target.raw_min, shape(target)), Const(target.raw_max, shape(target)))
-    yield Mux(beyond, extreme, result), fault | beyond
+    extreme = either(below, Const(target.raw_min, shape(target)), Const(target.raw_max, shape(target)))
+    yield either(beyond, extreme, result), fault if never(beyond) else fault | beyond
 
 
 def _saturate(target: Q, rounded, floor):
     """(result, fault): see `golden.qarray.QArray.to`."""
-    low, high = Const(target.raw_min, shape(target)), Const(target.raw_max, shape(target))
-    under = rounded < low
-    return Mux(under, low, Mux(rounded > high, high, rounded)), under | (floor > high)
+    result, faults = rounded, []
+    if _extremes(rounded)[1] > target.raw_max:
+        high = Const(target.raw_max, shape(target))
+        result = Mux(rounded > high, high, result)
+    if _extremes(floor)[1] > target.raw_max:
+        faults.append(floor > target.raw_max)
+    if _extremes(rounded)[0] < target.raw_min:
+        faults.append(rounded < target.raw_min)
+        result = Mux(faults[-1], Const(target.raw_min, shape(target)), result)
+    return result, functools.reduce(operator.or_, faults) if faults else Const(0)
+
+
+def _extremes(value: Value) -> tuple[int, int]:
+    q = Q(len(value), 0, value.shape().signed)
+    return q.raw_min, q.raw_max
 
 
 STEPS = {

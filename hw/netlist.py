@@ -1,0 +1,72 @@
+"""A component as a netlist of modules: each kind of component once, its ports the members it documents."""
+
+import re
+
+from amaranth.back import rtlil
+from amaranth.hdl import ClockSignal, Fragment, Instance, ResetSignal, Signal, Value
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In
+
+PLACEHOLDER = "name_of_the_module"
+
+
+def netlist(component: wiring.Component, name: str) -> str:
+    """RTLIL of ``component`` as the module ``name``, and of what it is made of as modules ``<name>_<kind>``.
+
+    A component with an attribute ``module`` is an instance of a module of that name, which is made elsewhere; one with
+    an attribute ``kind`` is called so, any other after its class. Elaborates the component; the wires of its
+    submodules' ports are renamed after submodule and port.
+    """
+    kinds = _Kinds(name)
+    kinds.add(Fragment.get(component, None), component, name)
+    return "\n".join(text.replace(PLACEHOLDER, kind) for kind, text in kinds.modules.items())
+
+
+class _Kinds:
+    """``modules``: RTLIL by name. Components that give the same text share a module."""
+
+    def __init__(self, prefix: str):
+        self._prefix = prefix
+        self.modules: dict[str, str] = {}
+
+    def add(self, fragment: Fragment, component: wiring.Component, name: str) -> str:
+        """The name of the component's module."""
+        for number, (child, label, source) in enumerate(fragment.subfragments):
+            if (part := _component(child)) is not None:
+                instance = self._place(child, part, label)
+                fragment.subfragments[number] = (instance, label, source)
+        ports = {label: (value, None) for label, _, value in _ports(component)}
+        text, _ = rtlil.convert_fragment(fragment, ports, PLACEHOLDER, emit_src=False)
+        names = (name, *(f"{name}_{number}" for number in range(2, 100)))
+        name = next(name for name in names if self.modules.get(name, text) == text)
+        self.modules[name] = text
+        return name
+
+    def _place(self, fragment: Fragment, component: wiring.Component, label: str) -> Instance:
+        kind = getattr(component, "module", None) or self.add(fragment, component, f"{self._prefix}_{_kind(component)}")
+        connections = {"i_clk": ClockSignal(), "i_rst": ResetSignal()}
+        for port, member, value in _ports(component):
+            connections[f"{'i' if member.flow == In else 'o'}_{port}"] = value
+            if isinstance(value, Signal):
+                value.name = f"{label}_{port}"
+        return Instance(kind, **connections)
+
+
+def _component(fragment: Fragment) -> wiring.Component | None:
+    """The component of this project that the fragment was elaborated from."""
+    package = __package__.partition(".")[0]
+    for origin in fragment.origins or ():
+        if isinstance(origin, wiring.Component) and type(origin).__module__.startswith(f"{package}."):
+            return origin
+    return None
+
+
+def _kind(component: wiring.Component) -> str:
+    words = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", type(component).__name__).lower()
+    return getattr(component, "kind", words)
+
+
+def _ports(component: wiring.Component):
+    """(name, member, value) of all ports."""
+    for path, member, value in component.signature.flatten(component):
+        yield "__".join(map(str, path)), member, Value.cast(value)

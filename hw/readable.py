@@ -1,0 +1,69 @@
+"""Verilog as Yosys writes it, made readable: plain names, nothing that nobody reads, no riddles for a linter."""
+
+import re
+import textwrap
+from collections import Counter
+
+NAME = r"[A-Za-z_]\w*"
+REGISTER = re.compile(r"^  always @\(posedge clk\)\n    (\S+) +<= \\(\$\d+) ;$", re.MULTILINE)
+ALIAS = re.compile(rf"^  (?:wire (?:\[.*\] )?|assign )({NAME})(?:;| = .*)\n", re.MULTILINE)
+HEADER = re.compile(rf"^module ({NAME}) ?\(([^;]*)\);")
+CASE = re.compile(r"^( *)casez (?:.*\n)*?\1endcase$", re.MULTILINE)
+
+
+def readable(verilog: str) -> str:
+    """The same modules. A register's next value is called after it, any other intermediate result ``t<number>``."""
+    return re.sub(r"^module (?:.*\n)*?endmodule$", lambda module: _module(module[0]), verilog, flags=re.MULTILINE)
+
+
+def _module(text: str) -> str:
+    text = HEADER.sub(_clock_first, _without_aliases(_renamed(text)))
+    text = re.sub(rf"= ! ({NAME})", r"= ~| \1", text)  # of several bits
+    return CASE.sub(_with_default, text)
+
+
+def _renamed(text: str) -> str:
+    names, taken = {}, set(re.findall(rf"(?<![\\\w$]){NAME}", text))
+    registers = REGISTER.findall(text)
+    values = Counter(value for _, value in registers)
+    wanted = {value: f"{_plain(register)}_next" for register, value in registers if values[value] == 1}
+    for name in dict.fromkeys(re.findall(r"\\(\S+)", text)):
+        stem = wanted.get(name) or _plain("\\" + name)
+        candidates = (stem, *(f"{stem}_{number}" for number in range(2, len(taken) + 2)))
+        names[name] = next(candidate for candidate in candidates if candidate not in taken)
+        taken.add(names[name])
+    return re.sub(r"\\(\S+) ?", lambda match: names[match[1]], text)
+
+
+def _plain(name: str) -> str:
+    """A legal name for one that may be escaped."""
+    if re.fullmatch(r"\\\$\d+", name):
+        return f"t{name[2:]}"
+    if name.startswith("\\$auto$verilog_backend"):
+        return "initial_event"  # lets an always block run once even if its inputs never change
+    legal = re.sub(r"\W+", "_", name).strip("_")
+    return f"{legal}_" if name == f"\\{legal}" else legal  # a legal name that is escaped is a reserved word
+
+
+def _without_aliases(text: str) -> str:
+    """Wires that are assigned and never read are second names of others, or what an operation leaves unused."""
+    while True:
+        uses = Counter(re.findall(rf"(?<![.\w]){NAME}", text))
+        assigned = re.findall(rf"^  assign ({NAME}) = ", text, re.MULTILINE)
+        idle = {name for name in assigned if uses[name] == 2}  # declaration and assignment; a port has more
+        if not idle:
+            return text
+        text = ALIAS.sub(lambda line, idle=idle: "" if line[1] in idle else line[0], text)
+
+
+def _clock_first(header: re.Match) -> str:
+    ports = header[2].replace("\n", " ").replace(" ", "").split(",")
+    ports.insert(0, ports.pop())  # Amaranth counts ports from 0, and Yosys puts number 0 last
+    ports.sort(key=lambda port: port not in ("clk", "rst"))
+    return textwrap.fill(f"module {header[1]}({', '.join(ports)});", 110, subsequent_indent="    ")
+
+
+def _with_default(case: re.Match) -> str:
+    if re.search(rf"^{case[1]}  default:", case[0], re.MULTILINE):
+        return case[0]
+    return case[0].removesuffix("endcase") + f"  default: ;\n{case[1]}endcase"
