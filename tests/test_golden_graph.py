@@ -2,18 +2,16 @@
 
 import re
 from collections import Counter
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from datapath_calls import call_edge, call_node
 from integer_objects import random_raw, random_record
 
 from golden import records
 from golden.datapath import edge_graph, node_graph
-from golden.edge import edge
 from golden.formats import Formats
 from golden.graph import Graph, flatten
-from golden.node import node
 from golden.qarray import QArray
 from golden.qformat import BIT, Q
 from golden.rk4 import RK4
@@ -102,14 +100,6 @@ def random_inputs(graph, rng, faults, stage):
     return {name: QArray(raw, graph.inputs[name].fmt, faults) for name, raw in values.items()}
 
 
-def record(inputs, prefix, names):
-    return SimpleNamespace(**{name: inputs[f"{prefix}_{name}"] for name in names})
-
-
-def vector(inputs, name):
-    return [inputs[f"{name}_{axis}"] for axis in "xyz"]
-
-
 def assert_equal(graph, numbers, values, outputs):
     expected = {label: x for name in outputs for label, x in flatten(name, values[name])}
     assert graph.outputs.keys() == expected.keys()
@@ -129,11 +119,7 @@ def test_the_graph_of_an_edge_computes_the_edge(fmt, stage, rng):
     inputs = random_inputs(graph, rng, faults, stage)
     inputs["material_table"].raw[:] = rng.integers(tables, size=ITEMS)
 
-    i, j = (SimpleNamespace(x=vector(inputs, f"{end}_x"), v=vector(inputs, f"{end}_v")) for end in "ij")
-    values = edge(fmt, Tables(fmt, **contents), record(inputs, "stage", RK4.stage(0)), inputs["velocity_shift"],
-                  record(inputs, "material", records.material(fmt, tables)), i, j,
-                  record(inputs, "edge", records.edge_state(fmt)))
-
+    values = call_edge(fmt, Tables(fmt, **contents), tables, inputs)
     again = {name: QArray(x.raw, x.fmt, faults_of_graph) for name, x in inputs.items()}
     numbers = evaluate(graph, again, contents, faults_of_graph)
     assert_equal(graph, numbers, values, ["pull", "base_next", "ratio_next", "total_next"])
@@ -147,11 +133,7 @@ def test_the_graph_of_a_node_computes_the_node(banks, stage, rng):
     graph = node_graph(fmt, banks)
     faults, faults_of_graph = Counter(), Counter()
     inputs = random_inputs(graph, rng, faults, stage)
-    pulls = [vector(inputs, f"pull{bank}") for bank in range(banks)]
-    state = SimpleNamespace(**{name: vector(inputs, name) for name in records.node_state(fmt)})
-    values = node(fmt, record(inputs, "stage", RK4.stage(0)), inputs["velocity_shift"], pulls, vector(inputs, "load"),
-                  record(inputs, "inverse_mass", records.inverse_mass(fmt)), state)
-
+    values = call_node(fmt, banks, inputs)
     again = {name: QArray(x.raw, x.fmt, faults_of_graph) for name, x in inputs.items()}
     numbers = evaluate(graph, again, {}, faults_of_graph)
     outputs = ["force", "x", "v", "x_base_next", "v_base_next", "x_total", "v_total"]

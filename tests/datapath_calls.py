@@ -1,0 +1,36 @@
+"""The equations of an edge and of a node, called with the named inputs of their graphs."""
+
+from types import SimpleNamespace
+
+from golden import records
+from golden.edge import edge
+from golden.node import node
+from golden.rk4 import RK4
+
+
+def call_edge(fmt, tables, count, inputs):
+    """`golden.edge.edge` on the inputs of `golden.datapath.edge_graph` for ``count`` tables."""
+    i, j = (SimpleNamespace(x=_vector(inputs, f"{end}_x"), v=_vector(inputs, f"{end}_v")) for end in "ij")
+    material = _record(inputs, "material", records.material(fmt, count))
+    state = _record(inputs, "edge", records.edge_state(fmt))
+    return edge(fmt, tables, _stage(inputs), inputs["velocity_shift"], material, i, j, state)
+
+
+def call_node(fmt, banks, inputs):
+    """`golden.node.node` on the inputs of `golden.datapath.node_graph`."""
+    pulls = [_vector(inputs, f"pull{bank}") for bank in range(banks)]
+    mass = _record(inputs, "inverse_mass", records.inverse_mass(fmt))
+    state = SimpleNamespace(**{name: _vector(inputs, name) for name in records.node_state(fmt)})
+    return node(fmt, _stage(inputs), inputs["velocity_shift"], pulls, _vector(inputs, "load"), mass, state)
+
+
+def _stage(inputs):
+    return _record(inputs, "stage", RK4.stage(0))
+
+
+def _record(inputs, prefix, names):
+    return SimpleNamespace(**{name: inputs[f"{prefix}_{name}"] for name in names})
+
+
+def _vector(inputs, name):
+    return [inputs[f"{name}_{axis}"] for axis in "xyz"]
