@@ -27,8 +27,10 @@ def over_scenes(work: Callable, scenes: list[Scene], shown: Callable | None = No
     context = get_context("spawn")
     queue = context.SimpleQueue()
     with ProcessPoolExecutor(workers, context, _start, (queue if shown else None,)) as pool:
-        futures = [pool.submit(_call, work, scene, n) for n, scene in enumerate(scenes)]
-        waiting = set(futures)
+        # the longest first, so that no core is left with it in the end
+        order = sorted(range(len(scenes)), key=lambda n: -scenes[n].steps * len(scenes[n].mesh.edges))
+        futures = {n: pool.submit(_call, work, scenes[n], n) for n in order}
+        waiting = set(futures.values())
         try:
             while waiting:
                 finished, waiting = wait(waiting, POLL, FIRST_COMPLETED)
@@ -41,7 +43,7 @@ def over_scenes(work: Callable, scenes: list[Scene], shown: Callable | None = No
             for child in active_children():
                 child.terminate()
             raise
-    return [future.result() for future in futures]
+    return [futures[n].result() for n in range(len(scenes))]
 
 
 def cores() -> int:
