@@ -138,7 +138,7 @@ class Core(wiring.Component):
             sequencer.row_valid.eq(fetch.valid),
             sequencer.row_last.eq(fetch.last),
             sequencer.row_nodes.eq(Cat(*updated).all()),
-            sequencer.row_summed.eq(self._lines.later(sequencer.row_take, latency(self.datapath) - 1)),
+            sequencer.row_summed.eq(self._lines.later(sequencer.row_take, latency(self.datapath) - 1, reset=True)),
         ]
 
     def _nodes(self):
@@ -158,7 +158,7 @@ class Core(wiring.Component):
             sequencer.node_valid.eq(fetch.valid),
             sequencer.node_last.eq(fetch.last),
             sequencer.node_need.eq(entry["need"]),
-            sequencer.node_updated.eq(self._lines.later(sequencer.node_take, updater.latency)),
+            sequencer.node_updated.eq(self._lines.later(sequencer.node_take, updater.latency, reset=True)),
             updater.valid.eq(sequencer.node_take),
             updater.node.eq(fetch.index),
             updater.mask.eq(entry["mask"]),

@@ -1,6 +1,6 @@
 """A lane: an edge processor, the memories of its edges, its copy of the nodes and its sums of forces."""
 
-from amaranth.hdl import Module, Signal
+from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -9,6 +9,7 @@ from golden.graph import AXES
 
 from .accumulator import WRITTEN, Accumulator
 from .blocks.memory import READ_LATENCY, BlockRam, LutRam
+from .delay import DelayLines
 from .edge import EdgeDatapath, EdgeProcessor
 from .operations import shape
 from .parameters import Parameters
@@ -91,7 +92,7 @@ class Lane(wiring.Component):
         m = Module()
         m.submodules.edge_processor = self._edge = edge = EdgeProcessor(self.datapath)
         self._m, self._ready, self._arrival = m, self.datapath.ready, self.datapath.schedule.arrival
-        self._lines = {}
+        self._lines = DelayLines(m)
         self._nodes()
         self._edges()
         self._material()
@@ -112,13 +113,7 @@ class Lane(wiring.Component):
 
     def _later(self, name: str, cycle: int):
         """What was issued, when its edge is in ``cycle`` of the edge processor; its nodes are read before cycle 0."""
-        delay = READ_LATENCY + cycle
-        line = self._lines.setdefault(name, [getattr(self, name)])
-        while len(line) <= delay:
-            register = Signal.like(line[-1], name=f"{name}_c{len(line) - READ_LATENCY}".replace("-", "m"))
-            self._m.d.sync += register.eq(line[-1])
-            line.append(register)
-        return line[delay]
+        return self._lines.later(getattr(self, name), READ_LATENCY + cycle, name=name, reset=name == "valid")
 
     def _nodes(self):
         """Two copies of the nodes' states, one for each end of an edge."""

@@ -8,6 +8,7 @@ from golden.graph import Graph, Node
 
 from .blocks.multiplier import Multiplier
 from .cost import Cost
+from .delay import DelayLines
 from .operations import STEP_COUNT, STEPS, field, never, shape
 
 WIRES = {"scale", "field", "part"}
@@ -98,7 +99,7 @@ class Pipe:
 
     def __init__(self, m: Module, schedule: Schedule, inputs, valid, tables=None):
         self._m, self._schedule, self._inputs, self._tables = m, schedule, inputs, tables or {}
-        self._lines: dict[object, list] = {}
+        self._delays, self._results = DelayLines(m), {}
         self._valid = valid
         self._faults: dict[str, list] = {}
         for node in schedule.graph.nodes:
@@ -115,7 +116,7 @@ class Pipe:
 
     def valid(self, cycle: int):
         """1 when the item that is in ``cycle`` is a valid one."""
-        return self._delayed("valid", "valid", self._valid, 0, cycle)
+        return self._delays.later(self._valid, cycle, name="valid", reset=True)
 
     def at(self, node: Node, cycle: int):
         """A node's value in ``cycle``; delay lines are shared."""
@@ -125,21 +126,13 @@ class Pipe:
             return field(node, self.at(node.operands[0], cycle))
         if node.kind == "input":
             return self._input(node, cycle)
-        return self._delayed(node, node.name, self._lines[node][0], self._schedule.cycle[node], cycle)
+        return self._delays.later(self._results[node], cycle - self._schedule.cycle[node], name=node.name)
 
     def _input(self, node, cycle):
         first = self._schedule.cycle[node]
         if first is None:  # late, or static and then the same in every cycle
             first = self._schedule.arrival.get(node.name, cycle)
-        return self._delayed(node, node.name, self._inputs[node.name], first, cycle)
-
-    def _delayed(self, key, name, value, first, cycle):
-        line = self._lines.setdefault(key, [value])
-        while len(line) <= cycle - first:
-            register = Signal(value.shape(), name=f"{name}_c{first + len(line)}", reset_less=key != "valid")
-            self._m.d.sync += register.eq(line[-1])
-            line.append(register)
-        return line[cycle - first]
+        return self._delays.later(self._inputs[node.name], cycle - first, name=node.name)
 
     def _emit(self, node: Node):
         start, done = self._schedule.start[node], self._schedule.cycle[node]
@@ -155,7 +148,7 @@ class Pipe:
             result, *fault = self._steps(node, operands)
             if fault:
                 self._report(node.fmt.name, fault[0], done)
-        self._lines[node] = [result]
+        self._results[node] = result
 
     def _steps(self, node, operands):
         """The operation's values, the registers that it costs behind the last of its steps."""

@@ -112,7 +112,7 @@ class NodeUpdater(wiring.Component):
 
     def _later(self, value, cycle: int):
         """What was issued, when its node is in ``cycle`` of the pipeline; its words are read before cycle 0."""
-        return self._lines.later(value, READ_LATENCY + cycle)
+        return self._lines.later(value, READ_LATENCY + cycle, reset=value is self.valid)
 
     def _memory(self, name: str, width: int, arrival: int) -> BlockRam:
         """A word per node, read for ``arrival``, or for the host."""
