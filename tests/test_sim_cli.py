@@ -16,7 +16,7 @@ from sim import compare as comparison
 from sim.__main__ import main
 from sim.compare import power
 from sim.folder import MARK, write_text
-from sim.run import run
+from sim.run import LANES, run
 
 ROOT = Path(__file__).parents[1]
 QUICK = changed(SCENE, "duration = 0.01", "duration = 0.002")
@@ -77,9 +77,9 @@ def test_run_on_the_circuit(circuit, scene, tmp_path):
     assert main(["run", scene, "--backend", "rtl", "--lanes", "3", "--waves", "--out", str(out)]) == 0
     assert main(["run", scene, "--backend", "rtl", "--waves", "vcd", "--out", str(out)]) == 0
     assert main(["run", scene, "--backend", "rtl", "--out", str(out)]) == 0
-    assert circuit.asked == [(3, out / "waves.fst"), (4, out / "waves.vcd"), (4, None)]
+    assert circuit.asked == [(3, out / "waves.fst"), (LANES, out / "waves.vcd"), (LANES, None)]
     summary = json.loads((out / "summary.json").read_text())
-    assert (summary["lanes"], summary["cycles"]) == (4, 7000)
+    assert (summary["lanes"], summary["cycles"]) == (LANES, 7000)
 
 
 def test_a_later_run_replaces_the_earlier_ones_files(scene, tmp_path):
