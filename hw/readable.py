@@ -8,6 +8,7 @@ NAME = r"[A-Za-z_]\w*"
 REGISTER = re.compile(r"^  always @\(posedge clk\)\n    (\S+) +<= \\(\$\d+) ;$", re.MULTILINE)
 ALIAS = re.compile(rf"^  (?:wire (?:\[.*\] )?|assign )({NAME})(?:;| = .*)\n", re.MULTILINE)
 HEADER = re.compile(rf"^module ({NAME}) ?\(([^;]*)\);")
+REPEATED = re.compile(rf"(?<=[{{,] )({NAME}(?:\[\d+\])?)((?:, \1)+)(?=[, ])")
 CASE = re.compile(r"^( *)casez (?:.*\n)*?\1endcase$", re.MULTILINE)
 
 
@@ -18,6 +19,7 @@ def readable(verilog: str) -> str:
 
 def _module(text: str) -> str:
     text = HEADER.sub(_clock_first, _without_aliases(_renamed(text)))
+    text = REPEATED.sub(lambda bits: f"{{{bits[2].count(',') + 1}{{{bits[1]}}}}}", text)  # a sign that is extended
     text = re.sub(rf"= ! ({NAME})", r"= ~| \1", text)  # of several bits
     return CASE.sub(_with_default, text)
 
