@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import sys
 from functools import partial
+from pathlib import Path
 
 from golden import scene as scenes
 from golden.errors import InputError
+from sim import waves
 from sim.errors import InternalError, about
 from sim.run import BACKENDS, LANES
 
@@ -28,8 +30,8 @@ def parser() -> Parser:
     one.add_argument("--backend", required=True, choices=BACKENDS,
                      help="float64, the circuit's integer model, or its Verilog under Verilator")
     one.add_argument("--lanes", type=lanes, metavar="P", help=f"edge processors of the circuit (rtl; {LANES})")
-    one.add_argument("--waves", nargs="?", const="fst", choices=("fst", "vcd"), metavar="fst|vcd",
-                     help="write the circuit's waveforms as well (rtl; fst)")
+    one.add_argument("--waves", nargs="?", const="vcd", choices=waves.FORMATS, metavar="vcd|fst",
+                     help="write the circuit's waveforms as well (rtl; vcd, which is larger but needs no library)")
     one.add_argument("--out", required=True, metavar="DIR", help="folder for trajectory.npz and summary.json")
     one.set_defaults(run=run)
 
@@ -59,9 +61,11 @@ def run(args) -> int:
     for option in ("lanes", "waves"):
         if getattr(args, option) and args.backend != "rtl":
             raise InputError(f"--{option} must go with --backend rtl, not {args.backend}")
+    if args.waves:
+        waves.check(Path(f"waves.{args.waves}"))
     scene = scenes.load(args.scene)
     out = folder.claim(args.out, args.force)
-    for suffix in ("fst", "vcd"):  # of an earlier run
+    for suffix in waves.FORMATS:  # of an earlier run
         (out / f"waves.{suffix}").unlink(missing_ok=True)
     with about(scene):
         result = run(scene, args.backend, lanes=args.lanes or LANES, waves=args.waves and out / f"waves.{args.waves}")

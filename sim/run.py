@@ -14,11 +14,12 @@ from golden.errors import InputError
 from golden.problem import Scene
 from golden.trajectory import Trajectory
 from sim import limits, machines
+from sim import waves as waveforms
 from sim.image import Loaded
 from sim.units import Units
 
 BACKENDS = "float", "fixed", "rtl"
-LANES = 4
+LANES = 2
 CHECKS = 10  # steps of a run that the NumPy model computes again, if there are as many frames
 REPORT_EVERY = 200  # steps between two calls of `progress`
 
@@ -126,6 +127,8 @@ def _check(scene, backend, lanes, edge_order, engine, waves):
         raise InputError(f"lanes must be a whole number of at least 1, not {lanes!r}")
     if waves is not None and backend != "rtl":
         raise InputError(f"waves must go with the backend rtl, not {backend}: only the circuit has signals")
+    if waves is not None:
+        waveforms.check(waves)
     edges = len(scene.mesh.edges)
     if edge_order is not None and not np.array_equal(np.sort(edge_order), np.arange(edges)):
         raise InputError(f"edge_order must be a permutation of 0 to {edges - 1}")

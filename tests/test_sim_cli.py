@@ -11,7 +11,7 @@ from sim_objects import Standin, in_place_of_the_circuit
 
 from golden import model
 from golden import scene as scenes
-from sim import batch, machines, native
+from sim import batch, machines, native, waves
 from sim import compare as comparison
 from sim.__main__ import main
 from sim.compare import power
@@ -72,12 +72,13 @@ def test_run_writes_the_trajectory_and_a_summary(backend, scene, tmp_path, capsy
     assert err == [] and len(out) == 1 and out[0].startswith(f"block: 70 steps on {backend} in ")
 
 
-def test_run_on_the_circuit(circuit, scene, tmp_path):
+def test_run_on_the_circuit(circuit, scene, tmp_path, monkeypatch):
+    monkeypatch.setattr(waves, "found", lambda header: True)
     out = tmp_path / "out"
     assert main(["run", scene, "--backend", "rtl", "--lanes", "3", "--waves", "--out", str(out)]) == 0
-    assert main(["run", scene, "--backend", "rtl", "--waves", "vcd", "--out", str(out)]) == 0
+    assert main(["run", scene, "--backend", "rtl", "--waves", "fst", "--out", str(out)]) == 0
     assert main(["run", scene, "--backend", "rtl", "--out", str(out)]) == 0
-    assert circuit.asked == [(3, out / "waves.fst"), (LANES, out / "waves.vcd"), (LANES, None)]
+    assert circuit.asked == [(3, out / "waves.vcd"), (LANES, out / "waves.fst"), (LANES, None)]
     summary = json.loads((out / "summary.json").read_text())
     assert (summary["lanes"], summary["cycles"]) == (LANES, 7000)
 
@@ -171,7 +172,7 @@ HELP = "(see python -m sim run --help)"
     (["run", "s.toml", "--backend", "rtl", "--lanes", "two", "--out", "o"],
      f"argument --lanes: must be a whole number of at least 1, not 'two' {HELP}"),
     (["run", "s.toml", "--backend", "rtl", "--waves", "png", "--out", "o"],
-     f"argument --waves: invalid choice: 'png' (choose from 'fst', 'vcd') {HELP}"),
+     f"argument --waves: invalid choice: 'png' (choose from 'vcd', 'fst') {HELP}"),
     (["run", "s.toml", "--backend", "fixed", "--lanes", "2", "--out", "o"],
      "--lanes must go with --backend rtl, not fixed"),
     (["run", "s.toml", "--backend", "float", "--waves", "vcd", "--out", "o"],
@@ -225,6 +226,14 @@ def test_out_must_be_a_folder(scene, tmp_path, capsys):
     below = f"{scene}/below"
     refused(["run", scene, "--backend", "float", "--out", below],
             f"--out must be a folder that can be written, not {below}: Not a directory", capsys)
+
+
+def test_fst_without_its_libraries_is_refused_before_anything_runs(scene, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(waves, "found", lambda header: header == "zlib.h")
+    refused(["run", scene, "--backend", "rtl", "--waves", "fst", "--out", str(tmp_path / "out")],
+            "waves as fst need a library that is missing: install it (Debian: apt install liblz4-dev), "
+            "or take vcd, which needs none", capsys)
+    assert not (tmp_path / "out").exists()
 
 
 def test_an_interrupt_is_quiet(scene, tmp_path, capsys, monkeypatch):

@@ -1,4 +1,6 @@
 """sim.run: one face for float64, integer model and circuit; the frames it keeps, and what it refuses."""
+from pathlib import Path
+
 import golden_objects as objects
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from sim import machines
 from sim.compare import BOUND
 from sim.errors import InternalError
 from sim.run import CHECKS, Raw, checked_steps, run
+from sim.waves import found
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -170,6 +173,7 @@ def test_progress(backend):
     ({"backend": "rtl", "lanes": 2.0}, "lanes must be a whole number of at least 1, not 2.0"),
     ({"backend": "fixed", "waves": "w.fst"},
      "waves must go with the backend rtl, not fixed: only the circuit has signals"),
+    ({"backend": "rtl", "waves": Path("w.png")}, "waves must be a file ending in .vcd or .fst, not w.png"),
     ({"backend": "fixed", "edge_order": [0, 1]}, "edge_order must be a permutation of 0 to 22"),
     ({"backend": "fixed", "edge_order": [0] * 23}, "edge_order must be a permutation of 0 to 22"),
 ])
@@ -179,3 +183,9 @@ def test_refusals(arguments, message):
     with pytest.raises(InputError) as caught:
         run(scene, **arguments)
     assert str(caught.value) == message
+
+
+def test_headers_are_found_by_the_compiler(monkeypatch):
+    assert found("vector") and not found("no_such_header.h")
+    monkeypatch.setenv("PATH", "")
+    assert found("no_such_header.h")  # without a compiler, that is what is reported
