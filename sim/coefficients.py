@@ -74,7 +74,10 @@ def coefficients(
                 sigma=lambda g: np.ldexp(creep * branch(g * full)[1], creep_shift),
             )
         except ValueError as error:
-            raise InputError(f"materials.{material.name}.f1 must be nearer to the forces that occur: {error}") from None
+            raise InputError(
+                f"materials.{material.name}.f1 and f2 must give a branch that the damper table holds "
+                f"(a larger f1, a longer way to f2, or c_max nearer to c_min would do): {error}"
+            ) from None
 
     k, k_shift = coefficient(material.k * units.size / full, formats)
     c, c_shift = coefficient(material.c1 * units.velocity / full, formats)

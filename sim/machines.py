@@ -21,18 +21,10 @@ BUILD = Path(__file__).parents[1] / "build" / "rtl"
 ENGINES = "native", "numpy"
 
 
-class NumpyMachine(Machine):
-    """The reference: `golden.machine.Machine`, slow."""
-
-    def restart(self, v: np.ndarray):
-        self.v = v.copy()
-        self.refresh()
-
-
 @contextmanager
 def integer_model(image: Image, engine: str):
     if engine == "numpy":
-        yield NumpyMachine(image)
+        yield Machine(image)
     else:
         from sim.native import NativeMachine
 
@@ -71,7 +63,7 @@ class Witness:
     """Computes single steps of another machine again, with the NumPy model, and insists on the same bits."""
 
     def __init__(self, image: Image):
-        self._model = NumpyMachine(image)
+        self._model = Machine(image)
 
     def step(self, machine, number: int):
         """Let ``machine`` do step ``number``. Raises `InternalError` when the NumPy model gets another result."""

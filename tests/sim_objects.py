@@ -5,7 +5,7 @@ import golden_objects as objects
 import numpy as np
 
 from golden import materials, mesh
-from sim.machines import NumpyMachine
+from golden.machine import Machine
 
 DT = 2e-4
 MATERIALS = {
@@ -28,7 +28,7 @@ def block(material="rheological", dim=2, steps=(40, 20, 30), every=6, **kwargs):
                          **{"mass": 0.01 + 0.001 * (np.arange(len(m.points)) % 3), "every": every} | kwargs)
 
 
-class Standin(NumpyMachine):
+class Standin(Machine):
     """The integer model in the circuit's place."""
 
     cycles = 0

@@ -206,7 +206,11 @@ def pressed(material=SPRING, mass=0.01, load=(0.0, 0.0), velocity=(0.0, -0.1), s
      f"materials.gum must have coefficients {HOLDS}force_shift must be within -128 and 127 (Q8.0), not "),
     ({"load": (1e200, 0.0)}, "the scene must have numbers that the circuit can hold: cannot convert float infinity"),
     ({"material": materials.rheological_force("paste", 200.0, 0.5, f1=1e-12, f2=1e-11, c_max=20.0, c_min=0.2)},
-     "materials.paste.f1 must be nearer to the forces that occur: g1 must be at least "),
+     "materials.paste.f1 and f2 must give a branch that the damper table holds "
+     "(a larger f1, a longer way to f2, or c_max nearer to c_min would do): g1 must be at least "),
+    ({"material": materials.rheological_force("glue", 200.0, 1e-3, f1=1.0, f2=1.001, c_max=20.0, c_min=0.02)},
+     "materials.glue.f1 and f2 must give a branch that the damper table holds "
+     "(a larger f1, a longer way to f2, or c_max nearer to c_min would do): sigma must change by less than 1/8 "),
 ])
 def test_refusals(arguments, message):
     with np.errstate(over="ignore"), pytest.raises(InputError) as caught:

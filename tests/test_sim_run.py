@@ -9,6 +9,7 @@ from sim_objects import DT, MATERIALS, MESHES, block, in_place_of_the_circuit
 from golden import materials
 from golden.errors import InputError
 from golden.formats import Formats
+from golden.machine import Machine
 from sim import machines
 from sim.compare import BOUND
 from sim.errors import InternalError
@@ -124,7 +125,7 @@ def test_the_circuit_is_run_like_the_integer_model(monkeypatch, tmp_path):
     assert rtl.raw.same(fixed.raw)
 
 
-class Wrong(machines.NumpyMachine):
+class Wrong(Machine):
     """From step 15 on, one bit of a quantity is not what it must be."""
 
     done = 0
