@@ -37,7 +37,7 @@ class Program:
         fmt, busiest = image.formats, np.bincount(image.edges.ravel()).max()
         most = fmt.accumulator.raw_max // -fmt.force.raw_min
         if busiest > most:
-            raise InputError(f"edges at one node must be at most {most}, or a sum of forces may overflow, not {busiest}")
+            raise InputError(f"edges at one node must be at most {most}, so that no sum overflows, not {busiest}")
         if image.formats != parameters.formats:
             raise InputError(f"formats of the object must be the circuit's {parameters.formats}, not {image.formats}")
 
