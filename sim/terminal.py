@@ -44,7 +44,8 @@ def print_table(entries: list[dict]) -> None:
             "yes" if e["rtl_equals_fixed"] else "NO", power(e["max_dx_rel"]), power(e["bound"]), power(e["max_da"]),
             str(e["saturations"]), f"{e['seconds']:.0f}", "FAILS" if shortcomings(e) else "passes"))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    print(f"circuit with {entries[0]['lanes']} lanes against integer model (rtl=fixed: every bit of every frame), "
+    lanes = entries[0]["lanes"]
+    print(f"circuit with {lanes} lane{'s' * (lanes > 1)} against integer model (rtl=fixed: every bit of every frame), "
           "integer model\nagainst float64 (max dx: largest position difference / size of the object; "
           "max da: of a ratio)\n")
     for row in rows:
