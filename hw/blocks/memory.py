@@ -8,7 +8,42 @@ READ_LATENCY = 2
 """Cycles from a block RAM's address to its data: its own read and its output register."""
 
 
-class BlockRam(wiring.Component):
+class _Ram(wiring.Component):
+    def __init__(self, kind: str, width: int, depth: int):
+        if depth < 1:
+            raise ValueError(f"depth must be at least 1, not {depth!r}")
+        if width < 1:
+            raise ValueError(f"width must be at least 1, not {width!r}")
+        self.depth, self.kind = depth, f"{kind}_{depth}x{width}"
+        bits = max(1, (depth - 1).bit_length())
+        super().__init__(
+            {
+                "write": In(1),
+                "write_address": In(bits),
+                "write_data": In(width),
+                "address": In(bits),
+                "data": Out(width),
+            }
+        )
+
+    def _elaborate(self, domain: str, init):
+        """A module with the memory and a register behind it."""
+        m = Module()
+        m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=init)
+        write, read = words.write_port(), words.read_port(domain=domain)
+        word = Signal(len(self.data), reset_less=True)
+        m.d.comb += [
+            write.en.eq(self.write),
+            write.addr.eq(self.write_address),
+            write.data.eq(self.write_data),
+            read.addr.eq(self.address),
+            self.data.eq(word),
+        ]
+        m.d.sync += word.eq(read.data)
+        return m
+
+
+class BlockRam(_Ram):
     """A memory with one write and one read port in block RAM.
 
     A word appears `READ_LATENCY` cycles after its address, one a cycle. A word that is read in the cycle in which it
@@ -26,67 +61,19 @@ class BlockRam(wiring.Component):
     """
 
     def __init__(self, *, width: int, depth: int, init=()):
-        if depth < 1:
-            raise ValueError(f"depth must be at least 1, not {depth!r}")
-        if width < 1:
-            raise ValueError(f"width must be at least 1, not {width!r}")
-        self.depth, self._init = depth, init
-        self.kind = f"{'rom' if init else 'block_ram'}_{depth}x{width}"
-        bits = max(1, (depth - 1).bit_length())
-        super().__init__(
-            {
-                "write": In(1),
-                "write_address": In(bits),
-                "write_data": In(width),
-                "address": In(bits),
-                "data": Out(width),
-            }
-        )
+        self._init = init
+        super().__init__("rom" if init else "block_ram", width, depth)
 
     def elaborate(self, platform):
-        m = Module()
-        m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=self._init)
-        write, read = words.write_port(), words.read_port()
-        word = Signal(len(self.data), reset_less=True)
-        m.d.comb += [
-            write.en.eq(self.write),
-            write.addr.eq(self.write_address),
-            write.data.eq(self.write_data),
-            read.addr.eq(self.address),
-            self.data.eq(word),
-        ]
-        m.d.sync += word.eq(read.data)
-        return m
+        return self._elaborate("sync", self._init)
 
 
-class LutRam(wiring.Component):
-    """A small memory of lookup tables: a word appears in the cycle after its address."""
+class LutRam(_Ram):
+    """A small memory of lookup tables, with the members and errors of a `BlockRam`: a word appears in the cycle after
+    its address."""
 
     def __init__(self, *, width: int, depth: int):
-        bits = max(1, (depth - 1).bit_length())
-        self.depth = depth
-        self.kind = f"lut_ram_{depth}x{width}"
-        super().__init__(
-            {
-                "write": In(1),
-                "write_address": In(bits),
-                "write_data": In(width),
-                "address": In(bits),
-                "data": Out(width),
-            }
-        )
+        super().__init__("lut_ram", width, depth)
 
     def elaborate(self, platform):
-        m = Module()
-        m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=())
-        write, read = words.write_port(), words.read_port(domain="comb")
-        word = Signal(len(self.data), reset_less=True)
-        m.d.comb += [
-            write.en.eq(self.write),
-            write.addr.eq(self.write_address),
-            write.data.eq(self.write_data),
-            read.addr.eq(self.address),
-            self.data.eq(word),
-        ]
-        m.d.sync += word.eq(read.data)
-        return m
+        return self._elaborate("comb", ())

@@ -1,0 +1,107 @@
+"""A circuit in Amaranth's simulator, and datapaths of a few operations."""
+
+import gc
+import re
+import warnings
+from collections import Counter
+
+import numpy as np
+import pytest
+from amaranth.hdl import Cat, ClockDomain, Module
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+from amaranth.sim import Simulator
+
+from golden.graph import Graph
+from golden.qarray import QArray
+from hw.cost import Cost
+from hw.operations import shape
+from hw.pipe import Pipe, Schedule
+
+
+def simulate(component, *benches):
+    """Run testbenches on a component with a clock."""
+    top = Module()
+    top.domains.sync = ClockDomain()  # for a component without a register
+    top.submodules.dut = component
+    simulator = Simulator(top)
+    simulator.add_clock(1e-6)
+    for bench in benches:
+        simulator.add_testbench(bench)
+    simulator.run()
+
+
+class Piped(wiring.Component):
+    """A graph as a pipeline: its inputs and ``valid`` come in cycle 0, its outputs leave in ``latency``."""
+
+    def __init__(self, graph: Graph, cost: Cost):
+        self._graph, self._schedule = graph, Schedule(graph, cost)
+        self.latency = self._schedule.latency
+        saturating = {node.fmt.name for node in graph.nodes if node.kind in ("round", "shift_right")}
+        self.faults = sorted((saturating | {name for name, _ in graph.faults}) - {""})
+        super().__init__(
+            {
+                "valid": In(1),
+                **{name: In(shape(node.fmt)) for name, node in graph.inputs.items()},
+                **{name: Out(shape(node.fmt)) for name, node in graph.outputs.items()},
+                "fault": Out(len(self.faults)),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        inputs = {name: getattr(self, name) for name in self._graph.inputs}
+        pipe = Pipe(m, self._schedule, inputs, self.valid)
+        m.d.comb += [getattr(self, name).eq(pipe.output(name, self.latency)) for name in self._graph.outputs]
+        m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.faults))
+        return m
+
+
+def stream(dut, inputs: dict[str, np.ndarray], outputs, gaps=None) -> dict[str, list]:
+    """Feed a `Piped` one item per cycle; the outputs of each, and how often each fault was reported as ``faults``.
+
+    ``gaps``: how many cycles without a valid item come before each; the wires carry the next item's values then.
+    """
+    count = len(next(iter(inputs.values())))
+    columns = [(getattr(dut, name), values.tolist()) for name, values in inputs.items()]
+    gaps = [0] * count if gaps is None else gaps.tolist()
+    starts = (np.cumsum(gaps) + np.arange(count)).tolist()
+    results = {name: [] for name in outputs} | {"faults": Counter()}
+
+    async def feed(ctx):
+        for item, gap in enumerate(gaps):
+            for port, values in columns:
+                ctx.set(port, values[item])
+            if gap:
+                ctx.set(dut.valid, 0)
+                await ctx.tick().repeat(gap)
+            ctx.set(dut.valid, 1)
+            await ctx.tick()
+        ctx.set(dut.valid, 0)
+
+    async def collect(ctx):
+        due = set(starts)
+        for cycle in range(starts[-1] + dut.latency + 1):
+            if cycle - dut.latency in due:
+                for name in outputs:
+                    results[name].append(ctx.get(getattr(dut, name)))
+            faults = ctx.get(dut.fault)
+            results["faults"].update(name for bit, name in enumerate(dut.faults) if faults >> bit & 1)
+            await ctx.tick()
+
+    simulate(dut, feed, collect)
+    return results
+
+
+def numbers(values: dict[str, np.ndarray], formats, faults: Counter) -> dict[str, QArray]:
+    return {name: QArray(raw, formats[name], faults) for name, raw in values.items()}
+
+
+def refused(make, message: str):
+    """``make()`` raises ValueError with exactly this message. Amaranth would miss the component that it didn't make."""
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$") as caught:
+        make()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        del caught
+        gc.collect()

@@ -1,0 +1,104 @@
+"""The fetch of a list: all entries in their order, over and over, none twice, whenever they are taken."""
+
+import pytest
+from hw_objects import simulate
+
+from hw.blocks.memory import READ_LATENCY
+from hw.fetch import Fetch
+
+BITS = 6
+
+
+def word(index: int) -> int:
+    return index * 37 % 251
+
+
+class Memory:
+    """Answers an address `READ_LATENCY` cycles later."""
+
+    def __init__(self, dut):
+        self._dut, self._asked = dut, [0] * READ_LATENCY
+
+    def step(self, ctx):
+        ctx.set(self._dut.data, word(self._asked[0]))
+        self._asked = [*self._asked[1:], ctx.get(self._dut.address)]
+
+
+def take_all(dut, count, cycles, wanted):
+    """(entries taken as (index, last, word), cycles in which there was none). ``wanted(cycle)``: one would be taken."""
+    taken, missing, memory = [], [], Memory(dut)
+
+    async def bench(ctx):
+        ctx.set(dut.count, count)
+        ctx.set(dut.flush, 1)
+        for _ in range(3):
+            memory.step(ctx)
+            assert not ctx.get(dut.take)
+            await ctx.tick()
+        ctx.set(dut.flush, 0)
+        for cycle in range(cycles):
+            memory.step(ctx)
+            valid = ctx.get(dut.valid)
+            take = bool(valid and wanted(cycle))
+            ctx.set(dut.take, take)
+            if take:
+                taken.append((ctx.get(dut.index), ctx.get(dut.last), ctx.get(dut.word)))
+            if not valid:
+                missing.append(cycle)
+            await ctx.tick()
+
+    simulate(dut, bench)
+    return taken, missing
+
+
+def entries(count, number):
+    return [(k % count, int(k % count == count - 1), word(k % count)) for k in range(number)]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 8, 9, 1 << BITS])
+def test_one_a_cycle_once_it_is_under_way(count):
+    taken, missing = take_all(Fetch(index_bits=BITS, width=8), count, 200, lambda cycle: True)
+    assert missing == list(range(READ_LATENCY + 1))
+    assert taken == entries(count, 200 - len(missing))
+
+
+@pytest.mark.parametrize("count", [1, 3, 50])
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_however_it_is_taken(count, share, rng):
+    taken, missing = take_all(Fetch(index_bits=BITS, width=8), count, 600, lambda cycle: rng.random() < share)
+    assert missing == list(range(READ_LATENCY + 1))  # never short of entries again
+    assert taken == entries(count, len(taken)) and len(taken) > 30
+
+
+def test_bursts_after_a_long_wait():
+    taken, missing = take_all(Fetch(index_bits=BITS, width=8), 40, 400, lambda cycle: cycle % 50 > 20)
+    assert missing == list(range(READ_LATENCY + 1))
+    assert taken == entries(40, len(taken))
+
+
+def test_a_flush_starts_over_with_another_count(rng):
+    """At any moment: nothing of the old list is left."""
+    dut, memory = Fetch(index_bits=BITS, width=8), None
+
+    async def bench(ctx):
+        nonlocal memory
+        memory = Memory(dut)
+        for _ in range(30):
+            count, taken = int(rng.integers(1, 20)), []
+            ctx.set(dut.count, count)
+            ctx.set(dut.flush, 1)
+            ctx.set(dut.take, 0)
+            for _ in range(rng.integers(1, 4)):
+                memory.step(ctx)
+                await ctx.tick()
+            ctx.set(dut.flush, 0)
+            for _ in range(rng.integers(0, 30)):
+                memory.step(ctx)
+                take = bool(ctx.get(dut.valid) and rng.random() < 0.7)
+                ctx.set(dut.take, take)
+                if take:
+                    taken.append((ctx.get(dut.index), ctx.get(dut.last), ctx.get(dut.word)))
+                await ctx.tick()
+            assert taken == entries(count, len(taken))
+
+    simulate(dut, bench)

@@ -1,0 +1,165 @@
+"""The sequencer: no row before its nodes, no node before its rows, and every list comes to its end."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+from hw_objects import simulate
+
+from golden.rk4 import RK4
+from hw.sequencer import Sequencer
+
+ROW_BITS, NODE_BITS = 6, 5
+
+
+@dataclass
+class Lists:
+    """Rows as sets of nodes; ``need[n]``: rows to be summed before node n; ``told[n]``: what the circuit is told."""
+
+    rows: list[set]
+    nodes: int
+    told: list[int] = field(default_factory=list)
+
+    def __post_init__(self):
+        self.need = [max((k + 1 for k, row in enumerate(self.rows) if n in row), default=0) for n in range(self.nodes)]
+        self.told = self.told or self.need
+
+
+def random_lists(rng, nodes, rows, lanes, kind) -> Lists:
+    """``sorted``: as a good host orders them; ``shuffled``: any order; ``backwards``: the worst; ``empty``: hardly an
+    edge, most of the nodes alone."""
+    if kind == "empty":
+        return Lists([set(rng.choice(nodes, 2).tolist()) if k == 0 else set() for k in range(rows)], nodes)
+    spread = nodes if kind == "shuffled" else 4
+    ends = rng.integers(nodes, size=(rows * lanes, 1)) + rng.integers(-spread, spread + 1, (rows * lanes, 2))
+    ends = np.clip(ends, 0, nodes - 1)
+    if kind != "shuffled":
+        ends = ends[np.argsort(ends.max(1))]
+    if kind == "backwards":
+        ends = ends[::-1]
+    return Lists([set(row.ravel().tolist()) for row in ends.reshape(rows, -1)], nodes)
+
+
+class Run:
+    """A sequencer with lists in front of it and pipelines of given lengths behind it, watched in every cycle."""
+
+    def __init__(self, dut, lists: Lists, steps, latencies, ready, rng):
+        self.dut, self.lists, self.steps = dut, lists, steps
+        self.row_latency, self.node_latency = latencies
+        self._ready, self._rng = ready, rng
+        self.rows_taken = self.nodes_taken = 0
+        self.rows_summed = self.nodes_updated = 0  # over all stages, before this cycle
+        self.cycles = self.waits = 0
+
+    async def bench(self, ctx):
+        dut, lists = self.dut, self.lists
+        ctx.set(dut.rows, len(lists.rows))
+        ctx.set(dut.nodes, lists.nodes)
+        ctx.set(dut.steps, self.steps)
+        ctx.set(dut.start, 1)
+        await ctx.tick()
+        ctx.set(dut.start, 0)
+        row_line, node_line = [False] * self.row_latency, [False] * self.node_latency
+        loop = self.row_latency + self.node_latency + 8
+        limit = RK4.stages * self.steps * (len(lists.rows) + lists.nodes) * loop
+        while ctx.get(dut.busy):
+            taken = self._cycle(ctx, row_line[0], node_line[0])
+            row_line, node_line = [*row_line[1:], taken[0]], [*node_line[1:], taken[1]]
+            self.cycles += 1
+            assert self.cycles < limit, "the lists don't come to their end"
+            await ctx.tick()
+        stages = RK4.stages * self.steps
+        assert (self.rows_taken, self.nodes_taken) == (stages * len(lists.rows), stages * lists.nodes)
+        assert (self.rows_summed, self.nodes_updated) == (self.rows_taken, self.nodes_taken)
+        assert ctx.get(dut.steps_done) == self.steps
+        for _ in range(3):  # it stays so
+            await ctx.tick()
+            assert not ctx.get(dut.busy) and not ctx.get(dut.row_take) and not ctx.get(dut.node_take)
+
+    def _cycle(self, ctx, summed, updated):
+        dut, lists = self.dut, self.lists
+        row_stage, row = divmod(self.rows_taken, len(lists.rows))
+        node_stage, node = divmod(self.nodes_taken, lists.nodes)
+        row_valid, node_valid = self._rng.random(2) < self._ready
+        ctx.set(dut.row_summed, summed)
+        ctx.set(dut.node_updated, updated)
+        ctx.set(dut.row_valid, bool(row_valid))
+        ctx.set(dut.row_last, row == len(lists.rows) - 1)
+        ctx.set(dut.row_nodes, all(n < ctx.get(dut.updated) for n in lists.rows[row]))
+        ctx.set(dut.node_valid, bool(node_valid))
+        ctx.set(dut.node_last, node == lists.nodes - 1)
+        ctx.set(dut.node_need, lists.told[node])
+        row_take, node_take = ctx.get(dut.row_take), ctx.get(dut.node_take)
+        assert row_take <= row_valid and node_take <= node_valid
+        if row_take:
+            assert row_stage < RK4.stages * self.steps
+            assert ctx.get(dut.row_stage) == row_stage % RK4.stages
+            last = min(max(lists.rows[row], default=-1), lists.nodes - 1)
+            needed = lists.nodes * (row_stage - 1) + last + 1
+            assert self.nodes_updated >= needed, "a row went before its nodes were updated"
+        if node_take:
+            assert node_stage < RK4.stages * self.steps
+            assert ctx.get(dut.node_stage) == node_stage % RK4.stages
+            needed = len(lists.rows) * node_stage + lists.need[node]
+            assert self.rows_summed >= needed, "a node went before its rows were summed"
+        waits = ctx.get(dut.row_waits)
+        assert waits <= row_valid and not (waits and row_take)
+        self.waits += waits
+        self.rows_taken += row_take
+        self.nodes_taken += node_take
+        self.rows_summed += summed
+        self.nodes_updated += updated
+        return bool(row_take), bool(node_take)
+
+
+def watched(*runs):
+    async def bench(ctx):
+        for run in runs:
+            await run.bench(ctx)
+
+    simulate(runs[0].dut, bench)
+
+
+def sequencer():
+    return Sequencer(row_bits=ROW_BITS, node_bits=NODE_BITS)
+
+
+@pytest.mark.parametrize("kind", ["sorted", "shuffled", "backwards", "empty"])
+@pytest.mark.parametrize("ready", [1.0, 0.6])
+@pytest.mark.parametrize("latencies", [(1, 1), (12, 5), (3, 20)], ids=str)
+def test_random_lists(kind, ready, latencies, rng):
+    dut, runs = sequencer(), []
+    for _ in range(4):  # one after the other, on the same circuit
+        lists = random_lists(rng, int(rng.integers(2, 20)), int(rng.integers(1, 25)), int(rng.integers(1, 4)), kind)
+        runs.append(Run(dut, lists, int(rng.integers(1, 4)), latencies, ready, rng))
+    watched(*runs)
+
+
+@pytest.mark.parametrize("nodes", [2, 1 << NODE_BITS])
+@pytest.mark.parametrize("rows", [1, 1 << ROW_BITS])
+def test_the_shortest_and_the_longest_lists(nodes, rows, rng):
+    lists = random_lists(rng, nodes, rows, 1, "sorted")
+    watched(Run(sequencer(), lists, 2, (5, 3), 1.0, rng))
+
+
+def test_a_node_that_asks_for_more_rows_than_there_are_goes_after_the_last(rng):
+    """A host's mistake makes it slow, not stuck."""
+    rows = random_lists(rng, 8, 10, 1, "sorted").rows
+    watched(Run(sequencer(), Lists(rows, 8, told=[40] * 8), 2, (5, 3), 1.0, rng))
+
+
+def test_a_row_that_asks_for_a_node_beyond_the_list_goes_after_the_last(rng):
+    rows = random_lists(rng, 8, 10, 1, "sorted").rows
+    lists = Lists([row | {20} for row in rows], 8)
+    watched(Run(sequencer(), lists, 2, (5, 3), 1.0, rng))
+
+
+def test_the_wavefront_overlaps_stages(rng):
+    """A long sorted chain keeps the rows going: with barriers a stage would take rows + both latencies."""
+    nodes, latencies = 32, (8, 4)
+    rows = [{n, n + 1} for n in range(nodes - 1)]
+    run = Run(sequencer(), Lists(rows, nodes), 8, latencies, 1.0, rng)
+    watched(run)
+    stages = RK4.stages * run.steps
+    assert run.cycles < stages * (nodes + 2) + sum(latencies) + 8
+    assert run.waits < run.cycles / 8
