@@ -1,10 +1,11 @@
 # Every target runs in the checkout's own virtual environment; environment.py sets it up, once.
 PYTHON ?= python3
 JOBS ?= 2
+LANES ?= 2
 
 # This make's flags must not reach the makes that Verilator and cocotb start.
 run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
-lanes := $(if $(LANES),--lanes $(LANES))
+lanes := --lanes $(LANES)
 # The tests of a file go to one worker: what they share is built once.
 pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
 capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES))

@@ -11,13 +11,19 @@ using Trace = VerilatedFstC;
 #endif
 #include <cstdint>
 
+constexpr long RECORDED_CYCLES = 5000;  // of waveforms, from the first run on: about 40 kB a cycle as VCD
+
 struct Circuit {
     VerilatedContext context;
     Vrheogate top{&context};
     uint64_t cycles = 0;
 #if defined(TRACE_VCD) || defined(TRACE_FST)
     Trace trace;
-    void dump(int half) { if (trace.isOpen()) trace.dump(10 * cycles + 5 * half); }
+    long recorded = 0;  // cycles, twice: each half is dumped; a run starts it
+    bool running = false;
+    void dump(int half) {
+        if (running && recorded < 2 * RECORDED_CYCLES) { trace.dump(10 * cycles + 5 * half); ++recorded; }
+    }
 #else
     void dump(int) {}
 #endif
@@ -81,6 +87,9 @@ long circuit_transact(Circuit *c, long n, const uint32_t *address, const uint64_
 
 // Ticks while the circuit is busy, at most so many cycles; returns whether it still is.
 int circuit_wait(Circuit *c, long most) {
+#if defined(TRACE_VCD) || defined(TRACE_FST)
+    c->running = true;
+#endif
     for (long k = 0; k < most && c->top.busy; ++k) c->tick();
     return c->top.busy;
 }
