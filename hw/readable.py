@@ -21,6 +21,8 @@ def _module(text: str) -> str:
     text = HEADER.sub(_clock_first, _without_aliases(_renamed(text)))
     text = REPEATED.sub(lambda bits: f"{{{bits[2].count(',') + 1}{{{bits[1]}}}}}", text)  # a sign that is extended
     text = re.sub(rf"= ! ({NAME})", r"= ~| \1", text)  # of several bits
+    # In SystemVerilog what a declaration sets is there before any process looks: no event
+    text = text.replace("  reg initial_event = 0;\n", "  reg initial_event;\n  initial initial_event = 0;\n")
     return CASE.sub(_with_default, text)
 
 

@@ -1,0 +1,348 @@
+"""What `test_cocotb_core` runs in a simulator: the emitted circuit behind its host port, nothing but its ports.
+
+Inputs change and outputs are looked at on the falling edge; reading an X as a number is an error.
+"""
+
+import cocotb
+import numpy as np
+from cocotb.clock import Clock
+from cocotb.triggers import FallingEdge
+from integer_objects import MATERIALS, irregular, pressed
+
+from golden import records
+from golden.machine import Machine
+from golden.rk4 import RK4
+from hw.core import Core
+from hw.parameters import Parameters
+from hw.registers import MAGIC, NODE_FORCE, NODE_STATE, TABLE_WORDS, VERSION, Control, Map, Region, join
+from sim.image import load
+from sim.program import Program
+
+PARAMETERS = Parameters(lanes=2, nodes=16, edges=64, materials=2, tables=1)
+MAP = Map(PARAMETERS)
+SEED = 1
+OBJECTS = {"2-D": ((3, 3), "rheological-force"), "3-D": ((2, 2, 2), "rheological"), "small": ((2, 2), "rheological")}
+STATE = (*NODE_STATE, *NODE_FORCE)
+LAST_ANSWER = 12  # cycles after which no request is without an answer
+
+
+class Host:
+    """The host's side of the port."""
+
+    def __init__(self, dut):
+        self.dut = dut
+
+    async def reset(self):
+        self.dut.request.value = self.dut.write.value = self.dut.address.value = self.dut.write_data.value = 0
+        self.dut.rst.value = 1
+        for _ in range(2):
+            await FallingEdge(self.dut.clk)
+        self.dut.rst.value = 0
+        await FallingEdge(self.dut.clk)
+
+    async def cycle(self):
+        """The next cycle: (error, read_data) if there is an answer in it."""
+        await FallingEdge(self.dut.clk)
+        return (int(self.dut.error.value), self.dut.read_data.value) if int(self.dut.answer.value) else None
+
+    async def transact(self, requests):
+        """(error, read_data) of each (write, address, data), one request a cycle; a good write reads None."""
+        requests = list(requests)
+        answers = []
+        for write, address, data in requests:
+            self.dut.request.value, self.dut.write.value = 1, write
+            self.dut.address.value, self.dut.write_data.value = address, data
+            answers.append(await self.cycle())
+        self.dut.request.value = 0
+        for _ in range(LAST_ANSWER):
+            answers.append(await self.cycle())
+        answers = [answer for answer in answers if answer]
+        assert len(answers) == len(requests)
+        return [
+            (error, None if write and not error else int(data))
+            for (write, _, _), (error, data) in zip(requests, answers, strict=True)
+        ]
+
+    async def write(self, writes):
+        answers = await self.transact((1, address, data) for address, data in writes)
+        assert all(error == 0 for error, _ in answers)
+
+    async def read(self, addresses) -> list[int]:
+        answers = await self.transact((0, address, 0) for address in addresses)
+        assert all(error == 0 for error, _ in answers)
+        return [data for _, data in answers]
+
+    async def control(self, register) -> int:
+        return (await self.read([control(register)]))[0]
+
+    async def begin(self, steps):
+        """A run; its first cycle is the one that comes now."""
+        self.dut.request.value = self.dut.write.value = 1
+        self.dut.address.value, self.dut.write_data.value = control(Control.RUN), steps
+        await self.cycle()
+        self.dut.request.value = 0
+        while not int(self.dut.busy.value):
+            assert await self.cycle() is None
+
+    async def run(self, steps):
+        await self.begin(steps)
+        return await self.wait()
+
+    async def wait(self):
+        """Until the run is over: [cycles, rows issued, waits of a row], counted on the way."""
+        counted = np.zeros(3, int)
+        while int(self.dut.busy.value):
+            sequencer = self.dut.sequencer
+            counted += [1, int(sequencer.row_take.value), int(sequencer.row_waits.value)]
+            await self.cycle()
+        return list(counted)
+
+    async def refused(self, requests):
+        """All of them are refused, counted, and answer nothing."""
+        requests = list(requests)
+        before = await self.control(Control.REFUSED)
+        for request, answer in zip(requests, await self.transact(requests), strict=True):
+            assert answer == (1, 0), f"write {request[0]}, address {request[1]:#x}, data {request[2]}"
+        assert await self.control(Control.REFUSED) == before + len(requests)
+
+
+def control(register):
+    return MAP.address(Region.CONTROL, 0, register)
+
+
+def signed(words):
+    top = 1 << PARAMETERS.formats.state - 1
+    return (np.array(words, np.int64) ^ top) - top
+
+
+class Object:
+    """A pressed object, its program, and the integer model that has been loaded with it."""
+
+    def __init__(self, name="small"):
+        nodes, material = OBJECTS[name]
+        loaded = load(pressed(irregular(nodes, np.random.default_rng(SEED)), MATERIALS[material], 30))
+        self.image, self.model = loaded.image, Machine(loaded.image)
+        self.program, self._tables = Program(self.image, PARAMETERS), loaded.scene.force_dependent
+
+    def writes(self):
+        """Without tables that nothing reads."""
+        load = [(a, data) for a, data in self.program.load() if self._tables or a < join(Region.TABLE, 0, 0, 0)]
+        return [*load, *self.program.start(self.image.v, self.image.x)]
+
+    def kept(self):
+        """Address -> what a read gives after `writes`: a material's fields have no more bits than they need."""
+        kept, widths = dict(self.writes()), records.material(PARAMETERS.formats, PARAMETERS.tables)
+        for number in range(len(self.image.materials)):
+            for name, q in widths.items():
+                kept[MAP.address(Region.MATERIAL, name, number)] &= (1 << q.width) - 1
+        return kept
+
+    async def state(self, host):
+        """(x, v, force, ratio) as the circuit has them."""
+        words = await host.read([a for name in STATE for a in self.program.node_addresses(name)])
+        nodes = signed(words).reshape(len(STATE), -1).T
+        ratio = signed(await host.read(self.program.edge_addresses("ratio")))
+        return nodes[:, :3], nodes[:, 3:6], nodes[:, 6:], ratio
+
+    async def check(self, host):
+        model = self.model
+        for name, got in zip(("x", "v", "force", "ratio"), await self.state(host), strict=True):
+            assert np.array_equal(got, getattr(model, name)), name
+
+
+async def start(dut, *objects):
+    Clock(dut.clk, 10, unit="ns").start()
+    host = Host(dut)
+    await host.reset()
+    for one in objects:
+        await host.write(one.writes())
+    return host
+
+
+@cocotb.test()
+@cocotb.parametrize(name=["2-D", "3-D"])
+async def what_is_written_is_read_and_steps_are_the_models(dut, name):
+    one = Object(name)
+    host = await start(dut, one)
+    kept = one.kept()
+    assert await host.read(kept) == list(kept.values())
+    await host.run(2)
+    one.model.step(2)
+    await one.check(host)
+    assert (one.model.x != one.image.x).any() and (one.model.ratio != one.image.ratio).any()
+    assert await host.control(Control.FAULTS) == 0
+
+
+@cocotb.test()
+async def a_reset_circuit_says_what_it_is(dut):
+    host = await start(dut)
+    expected = {
+        Control.MAGIC: MAGIC, Control.VERSION: VERSION, Control.LANES: 2, Control.NODES: 16, Control.ROWS: 32,
+        Control.MATERIALS: 2, Control.TABLES: 1, Control.BUSY: 0, Control.REFUSED: 0, Control.RUN: 0,
+        Control.ROW_COUNT: 0, Control.NODE_COUNT: 0, Control.CYCLES: 0, Control.STEPS_DONE: 0, Control.FAULTS: 0,
+    }
+    assert await host.read([control(register) for register in expected]) == list(expected.values())
+    await host.refused([(1, control(Control.RUN), 1)])  # nothing is loaded
+
+
+@cocotb.test()
+async def a_run_in_pieces_is_the_same_run(dut):
+    one, again = Object(), Object()
+    host = await start(dut, one)
+    await host.run(3)
+    one.model.step(3)
+    await one.check(host)
+    x, v, _, ratio = await one.state(host)
+    await host.run(2)
+    one.model.step(2)
+    await one.check(host)
+
+    # The state after three steps, written back into the circuit after a reset
+    again.image.x, again.image.v, again.image.ratio = x, v, ratio
+    await host.reset()
+    await host.write(again.writes())
+    await host.run(2)
+    await one.check(host)
+
+
+@cocotb.test()
+async def a_running_circuit_refuses_and_is_not_disturbed(dut):
+    one = Object()
+    host, kept = await start(dut, one), one.kept()
+    await host.write([(control(Control.RUN), 2)])
+    assert await host.control(Control.BUSY) == 1
+    memory = [MAP.address(region, word) for region in Region if region for word in MAP.words(region)]
+    registers = (Control.RUN, Control.ROW_COUNT, Control.NODE_COUNT, Control.VELOCITY_SHIFT)
+    await host.refused([(1, address, 1) for address in memory + [control(register) for register in registers]])
+    await host.refused([(0, address, 0) for address in memory])
+    assert await host.control(Control.BUSY) == 1
+    await host.wait()
+    assert await host.control(Control.STEPS_DONE) == 2
+    one.model.step(2)
+    await one.check(host)
+    changed = {a for name in NODE_STATE for a in one.program.node_addresses(name)}
+    changed |= set(one.program.edge_addresses("ratio"))
+    kept = {address: word for address, word in kept.items() if address not in changed}
+    assert await host.read(kept) == list(kept.values())
+
+
+@cocotb.test()
+async def two_runs_at_once_are_one(dut):
+    """The second request comes in the cycle after the first, before the circuit says that it is busy."""
+    one = Object()
+    host = await start(dut, one)
+    answers = await host.transact([(1, control(Control.RUN), 1), (1, control(Control.RUN), 2)])
+    assert [error for error, _ in answers] == [0, 1]
+    await host.wait()
+    one.model.step(1)
+    await one.check(host)
+
+
+@cocotb.test()
+async def what_is_not_on_the_map_is_refused_and_nothing_changes(dut):
+    one = Object()
+    host, kept = await start(dut, one), one.kept()
+    outside = []
+    for region in Region:
+        outside += [join(region, 0, MAP.depth(region), 0), join(region, 0, (1 << 16) - 1, 0)]
+        outside += [join(region, len(MAP.words(region)), 0, 0), join(region, 31, 0, 0)]
+        outside += [join(region, 0, 0, lane) for lane in range(MAP.lanes(region), 8)]
+    outside += [join(region, 0, 0, 0) for region in range(len(Region), 8)]
+    await host.refused([(write, address, 1) for address in outside for write in (0, 1)])
+
+    read_only = [control(register) for register in Control if register <= Control.STEPS_DONE]
+    read_only += [MAP.address(Region.NODE, name) for name in NODE_FORCE]
+    await host.refused([(1, address, 1) for address in read_only])
+
+    p = PARAMETERS
+    impossible = [
+        (Control.RUN, 0), (Control.RUN, 1 << 32),
+        (Control.ROW_COUNT, 0), (Control.ROW_COUNT, p.rows + 1), (Control.ROW_COUNT, 1 << 32),
+        (Control.NODE_COUNT, 0), (Control.NODE_COUNT, p.nodes + 1), (Control.NODE_COUNT, 1 << 32),
+        (Control.VELOCITY_SHIFT, 128), (Control.VELOCITY_SHIFT, 1 << 32),
+    ]
+    await host.refused([(1, control(register), value) for register, value in impossible])
+
+    assert await host.control(Control.BUSY) == 0
+    assert await host.read(kept) == list(kept.values())
+    await host.write([(control(Control.REFUSED), 0)])
+    assert await host.control(Control.REFUSED) == 0
+    await host.run(1)
+    one.model.step(1)
+    await one.check(host)
+
+
+@cocotb.test()
+async def the_counters_count(dut):
+    one = Object()
+    host = await start(dut, one)
+    for steps in (3, 1):
+        cycles, rows, waits = await host.run(steps)
+        counters = Control.CYCLES, Control.ROWS_ISSUED, Control.ROW_WAITS, Control.STEPS_DONE
+        assert await host.read([control(register) for register in counters]) == [cycles, rows, waits, steps]
+        assert rows == one.program.rows * RK4.stages * steps
+        assert 0 < waits < cycles
+
+
+@cocotb.test()
+async def a_circuit_that_is_reset_in_a_run_is_loaded_again(dut):
+    one, other = Object("3-D"), Object("small")
+    host = await start(dut, one)
+    for cycles in (1, 77, 300):
+        await host.write([(control(Control.RUN), 1000)])
+        for _ in range(cycles):
+            await host.cycle()
+        assert int(dut.busy.value) == 1
+        await host.reset()
+        assert int(dut.busy.value) == 0
+        await host.write(one.writes())
+    await host.write(other.writes())
+    await host.run(1)
+    other.model.step(1)
+    await other.check(host)
+
+
+@cocotb.test()
+async def faults_stay_until_they_are_cleared(dut):
+    """An edge whose ends are one point."""
+    one = Object()
+    one.image.x[one.image.edges[0, 0]] = one.image.x[one.image.edges[0, 1]]
+    host = await start(dut, Object())
+    await host.write(one.program.start(one.image.v, one.image.x))
+    names = Core(PARAMETERS).faults
+    await host.run(1)
+    flags = await host.control(Control.FAULTS)
+    model = Machine(one.image)
+    model.step(1)
+    assert "edge length" in model.faults
+    assert {name for bit, name in enumerate(names) if flags >> bit & 1} == set(model.faults)
+    lowest = flags & -flags
+    await host.write([(control(Control.FAULTS), lowest)])
+    assert await host.control(Control.FAULTS) == flags ^ lowest
+    await host.write([(control(Control.FAULTS), (1 << 36) - 1)])
+    assert await host.control(Control.FAULTS) == 0
+
+
+@cocotb.test()
+async def every_word_of_every_memory_holds_what_is_written(dut):
+    """All bits of a word, at the first and the last index of each lane."""
+    host = await start(dut)
+    formats = {
+        Region.NODE: {**dict.fromkeys(MAP.words(Region.NODE)[:9], 36), "inverse_mass": 26, "entry": 33},
+        Region.EDGE: {"entry": records.width(records.edge_entry()), "length": 36, "ratio": 36},
+        Region.MATERIAL: {name: q.width for name, q in records.material(PARAMETERS.formats, 1).items()},
+        Region.TABLE: dict.fromkeys(TABLE_WORDS, records.width(records.damper_word(PARAMETERS.formats)) // 2),
+    }
+    rng = np.random.default_rng(SEED)
+    expected = {}
+    for region, words in formats.items():
+        for name, bits in words.items():
+            for index in (0, MAP.depth(region) - 1):
+                shared = int(rng.integers(1 << bits))
+                for lane in range(MAP.lanes(region)):  # a write to a material or a table goes to all lanes
+                    own = int(rng.integers(1 << bits)) if region == Region.EDGE else shared
+                    expected[MAP.address(region, name, index, lane)] = own
+    await host.write(expected.items())
+    got = await host.read(expected)
+    for address, word, want in zip(expected, got, expected.values(), strict=True):
+        assert word & want == want and (word ^ want) >> 35 in (0, 1), hex(address)

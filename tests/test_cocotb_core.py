@@ -1,0 +1,42 @@
+"""The emitted Verilog of the whole circuit in two simulators, through cocotb; Icarus also shows what is undefined."""
+
+import os
+import shutil
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import cocotb_core
+import pytest
+from cocotb_tools.runner import get_runner
+
+from hw.verilog import TOP, emit
+from sim.machines import BUILD
+
+TESTS = Path(__file__).parent
+# A module that is there twice is compiled once; the little that is run needs no optimiser
+ARGUMENTS = {"verilator": ["-Wno-lint", "-Wno-fatal", "-fno-inline"], "icarus": []}
+UNOPTIMISED = "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0"
+PROGRAM = {"verilator": "verilator", "icarus": "iverilog"}
+
+
+@pytest.mark.parametrize("simulator", ARGUMENTS)
+def test_the_emitted_circuit(simulator, tmp_path, monkeypatch):
+    if not shutil.which(PROGRAM[simulator]):
+        pytest.skip(f"{PROGRAM[simulator]} is not installed (Debian: apt install {PROGRAM[simulator]})")
+    folder = BUILD.with_name("cocotb") / simulator
+    folder.mkdir(parents=True, exist_ok=True)
+    source = folder / f"{TOP}.v"
+    source.write_text(emit(cocotb_core.PARAMETERS)[0])
+    monkeypatch.setenv("MAKEFLAGS", f"{os.environ['MAKEFLAGS']} {UNOPTIMISED}")
+    runner = get_runner(simulator)
+    runner.build(
+        sources=[source], hdl_toplevel=TOP, build_dir=folder, build_args=ARGUMENTS[simulator], always=True,
+        timescale=("1ns", "1ps"), log_file=folder / "build.log",
+    )
+    results = runner.test(
+        hdl_toplevel=TOP, test_module="cocotb_core", build_dir=folder, test_dir=tmp_path,
+        results_xml=str(tmp_path / "results.xml"), extra_env={"PYTHONPATH": f"{TESTS}:{TESTS.parent}"},
+    )
+    cases = ElementTree.parse(results).getroot().iter("testcase")
+    names = [case.get("name") for case in cases]
+    assert len(names) == 11
