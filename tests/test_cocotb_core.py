@@ -13,9 +13,9 @@ from hw.verilog import TOP, emit
 from sim.machines import BUILD
 
 TESTS = Path(__file__).parent
-# A module that is there twice is compiled once; the little that is run needs no optimiser
+# A module that is there twice is compiled once, all at once; the little that is run needs no optimiser
 ARGUMENTS = {"verilator": ["-Wno-lint", "-Wno-fatal", "-fno-inline"], "icarus": []}
-UNOPTIMISED = "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0"
+UNOPTIMISED = "VM_PARALLEL_BUILDS=0 OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0"
 PROGRAM = {"verilator": "verilator", "icarus": "iverilog"}
 
 
