@@ -130,8 +130,9 @@ class HostPort(wiring.Component):
     def _permitted(self, region, write, index, word, data):
         p, idle = self._map.parameters, ~self.busy & ~self.start
         if region == Region.NODE:
-            force = next(k for k, name in enumerate(self._map.words(region)) if name.startswith("force"))
-            return idle & ~(write & (word >= force))
+            words = enumerate(self._map.words(region))
+            read_only = Cat(word == number for number, name in words if self._map.read_only(region, name))
+            return idle & ~(write & read_only.any())
         if region != Region.CONTROL:
             return idle
         writable = Array(

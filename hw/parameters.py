@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass, field
 
+from golden import records
 from golden.formats import Formats
 
 from .cost import Cost
+
+EDGE, NODE = records.edge_entry(), records.node_entry()
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,8 @@ class Parameters:
     Raises
     ------
     ValueError
-        If one of them is out of range.
+        If one of them is out of range: `golden.records` says how large a node's number may be, and so on; or if a
+        state word, in which the host writes everything, is shorter than the longest of those records.
     """
 
     lanes: int = 4
@@ -35,10 +39,10 @@ class Parameters:
     cost: Cost = field(default_factory=Cost)
 
     RANGES = {  # noqa: RUF012 (a constant)
-        "lanes": (1, 8),
-        "nodes": (2, 4096),
-        "edges": (1, 65536),
-        "materials": (1, 64),
+        "lanes": (1, NODE["mask"].width // 2),
+        "nodes": (2, EDGE["i"].raw_max + 1),
+        "edges": (1, 1 << 16),  # index bits of a host address
+        "materials": (1, EDGE["material"].raw_max + 1),
         "tables": (1, 16),
     }
 
@@ -47,6 +51,9 @@ class Parameters:
             value = getattr(self, name)
             if not isinstance(value, int) or not low <= value <= high:
                 raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
+        longest = max(records.width(record) for record in (EDGE, NODE))
+        if self.formats.state < longest:
+            raise ValueError(f"state must be at least {longest} bits, as a list's entry has, not {self.formats.state}")
 
     @property
     def rows(self) -> int:

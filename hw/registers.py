@@ -5,6 +5,7 @@ from enum import IntEnum
 
 from golden import records
 from golden.graph import AXES
+from golden.qformat import Q, unsigned
 
 from .parameters import Parameters
 
@@ -24,7 +25,7 @@ class Region(IntEnum):
 
 
 class Control(IntEnum):
-    """Index of a control register. Those up to `STEPS_DONE` are read only."""
+    """Index of a control register."""
 
     MAGIC = 0
     VERSION = 1
@@ -45,6 +46,8 @@ class Control(IntEnum):
     VELOCITY_SHIFT = 16
     RUN = 17
 
+
+READ_ONLY = frozenset(control for control in Control if control <= Control.STEPS_DONE)
 
 CONTROL_TEXT = {
     Control.MAGIC: "`RHEO`",
@@ -96,6 +99,29 @@ class Map:
             Region.MATERIAL: p.materials,
             Region.TABLE: p.tables << p.formats.damper_index.width,
         }[region]
+
+    def fields(self, region: Region, word: str) -> dict[str, Q]:
+        """What a word holds, lowest bits first."""
+        fmt, tables = self.parameters.formats, self.parameters.tables
+        if region == Region.CONTROL:
+            return {"value": unsigned(fmt.state, 0)}
+        if word == "entry":
+            return records.node_entry() if region == Region.NODE else records.edge_entry()
+        if word == "inverse_mass":
+            return records.inverse_mass(fmt)
+        if region == Region.TABLE:
+            return {name: q for name, q in records.damper_word(fmt).items() if name.startswith(word)}
+        node = {"x": fmt.position, "v": fmt.velocity, "load": fmt.accumulator, "force": fmt.accumulator}
+        edge = {"length": fmt.length, "ratio": fmt.ratio}
+        formats = {
+            Region.NODE: {name: node[name.split("_")[0]] for name in NODE_STATE + NODE_LOAD + NODE_FORCE},
+            Region.EDGE: edge,
+            Region.MATERIAL: records.material(fmt, tables),
+        }
+        return {"value": formats[region][word]}
+
+    def read_only(self, region: Region, word: str) -> bool:
+        return region == Region.NODE and word in NODE_FORCE
 
     def lanes(self, region: Region) -> int:
         """How many lanes an address of the region may name; a write to materials and tables goes to all."""
