@@ -8,7 +8,8 @@ run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/
 lanes := --lanes $(LANES)
 # The tests of a file go to one worker: what they share is built once.
 pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
-capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES))
+capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
+              $(if $(MATERIALS),--materials $(MATERIALS)) $(if $(TABLES),--tables $(TABLES))
 
 .DEFAULT_GOAL := compare
 .NOTPARALLEL:
@@ -18,7 +19,7 @@ compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on flo
 	@$(run) -m sim compare scenes/*.toml $(lanes) --out build/report
 	@echo "report: build/report/index.html, figures: build/report/compare.json"
 
-verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES= and EDGES= choose its size
+verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size
 	@$(run) -m hw verilog $(lanes) $(capacities) --out build/verilog
 
 test: environment ## run the tests

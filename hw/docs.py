@@ -4,10 +4,8 @@ import re
 
 from golden import formats
 
-from .blocks.memory import READ_LATENCY
 from .core import Core
-from .host import LATENCY as HOST_LATENCY
-from .lane import latency as sums_latency
+from .latency import latencies
 from .parameters import Parameters
 from .registers import CONTROL_TEXT, Control, Map, Region
 
@@ -17,20 +15,8 @@ def format_table(parameters: Parameters) -> str:
 
 
 def latency_table(parameters: Parameters) -> str:
-    """Latencies of a circuit, in cycles, each read from the component that has it."""
-    core = Core(parameters)
-    edge, node = core.datapath, core.updater
-    written = READ_LATENCY + max(edge.ready(name) for name in ("base_next", "ratio_next", "total_next"))
-    rows = [
-        ("block RAM", "address to word", READ_LATENCY),
-        ("edge", "issue to its force on both nodes", READ_LATENCY + edge.ready("pull_x")),
-        ("edge", "issue to the sums that contain its force", sums_latency(edge)),
-        ("edge", "issue to its new ratio in the memory", written),
-        ("node", "issue to its new state in the memories", node.latency),
-        ("stage", "an edge to the next edge of the same node, at least", sums_latency(edge) + node.latency),
-        ("host port", "request to answer", HOST_LATENCY),
-    ]
     lines = ["| of | from, to | cycles |", "|---|---|---|"]
+    rows = latencies(Core(parameters))
     return "\n".join(lines + [f"| {of} | {what} | {cycles} |" for of, what, cycles in rows])
 
 

