@@ -20,10 +20,11 @@ COMPILER = ("c++", "-std=c++17", "-fPIC", "-w")
 FAST, SLOW = "-O1", "-O0"
 """What runs every cycle (-O2 runs a tenth faster and builds twice as long), and what runs once."""
 TRACES = {
-    "vcd": ("--trace-vcd", "verilated_vcd_c.cpp", ()),
-    "fst": ("--trace-fst", "verilated_fst_c.cpp", ("-lz", "-llz4")),
+    None: ((), (), ()),
+    "vcd": (("--trace-vcd",), ("verilated_vcd_c.cpp",), ()),
+    "fst": (("--trace-fst",), ("verilated_fst_c.cpp",), ("-lz", "-llz4")),
 }
-"""Waveforms: Verilator's option, the part of its runtime, the libraries that one needs."""
+"""Waveforms: Verilator's options, the parts of its own library, what those need."""
 
 
 def tools() -> dict[str, str]:
@@ -86,26 +87,56 @@ def _part(name: str, text: str, folder: Path) -> Path:
                 (work / f"{name}.v").write_text(text)
                 command = ["verilator", "--cc", f"{name}.v", "--top-module", name, "--lib-create", name, "-Mdir", "."]
                 _run([*command, *FLAGS], work)
-                _compile([*work.glob(f"V{name}*.cpp"), work / f"{name}.cpp"], work)
-                keep = work / "keep"
-                keep.mkdir()
-                for path in (*work.glob("*.o"), work / f"{name}.sv"):
-                    path.rename(keep / path.name)
-                keep.replace(target)
+                _compile(_units([*work.glob(f"V{name}*.cpp"), work / f"{name}.cpp"], work), work)
+                _keep([*work.glob("*.o"), work / f"{name}.sv"], target)
     return target
+
+
+def _runtime(folder: Path, trace: str | None) -> Path:
+    """The folder with the objects of Verilator's own library, which every design needs."""
+    target = folder / f"verilated_{_key(str(trace))}"
+    with _once(target) as missing:
+        if missing:
+            with _workshop(folder) as work:
+                names = "verilated.cpp", "verilated_threads.cpp", "verilated_dpi.cpp", *TRACES[trace][1]
+                _compile([_include() / name for name in names], work, _defines(trace))
+                _keep(work.glob("*.o"), target)
+    return target
+
+
+def _keep(paths, target: Path):
+    """Move files into the folder ``target``, which appears with all of them."""
+    paths = list(paths)
+    keep = paths[0].parent / "keep"
+    keep.mkdir()
+    for path in paths:
+        path.rename(keep / path.name)
+    keep.replace(target)
 
 
 def _build(top, text, shim, work, libraries, trace):
     (work / f"{top}.v").write_text(text)
     wrappers = [str((path / f"{name}.sv").resolve()) for name, path in libraries.items()]
-    option, runtime, linked = TRACES.get(trace, (None, None, ()))
-    _run(["verilator", "--cc", f"{top}.v", *wrappers, "--top-module", top, "--prefix", f"V{top}", "-Mdir", ".",
-          *FLAGS, *([option] if option else [])], work)
-    names = ["verilated.cpp", "verilated_threads.cpp", "verilated_dpi.cpp", *([runtime] if runtime else [])]
-    define = [f"-DTRACE_{trace.upper()}", "-DVM_TRACE=1", f"-DVM_TRACE_{trace.upper()}=1"] if trace else []
-    _compile([*work.glob(f"V{top}*.cpp"), *(_include() / name for name in names), shim.resolve()], work, define)
-    objects = [*work.glob("*.o"), *(o.resolve() for path in libraries.values() for o in path.glob("*.o"))]
+    options, _, linked = TRACES[trace]
+    command = ["verilator", "--cc", f"{top}.v", *wrappers, "--top-module", top, "--prefix", f"V{top}", "-Mdir", "."]
+    _run([*command, *FLAGS, *options], work)
+    _compile(_units([*work.glob(f"V{top}*.cpp"), shim.resolve()], work), work, _defines(trace))
+    folders = work, _runtime(work.parent, trace), *libraries.values()
+    objects = [o.resolve() for folder in folders for o in folder.glob("*.o")]
     _run(["c++", "-shared", *map(str, objects), "-o", "library.so", "-pthread", *linked], work)
+
+
+def _defines(trace):
+    return [f"-DTRACE_{trace.upper()}", "-DVM_TRACE=1", f"-DVM_TRACE_{trace.upper()}=1"] if trace else []
+
+
+def _units(sources, work) -> list[Path]:
+    """What runs every cycle and what runs once, each as one source: most of a small one's time goes into headers."""
+    slow = [path for path in sources if "Slow" in path.name]
+    units = {work / "every_cycle.cpp": sorted(set(sources) - set(slow)), work / "Slow.cpp": sorted(slow)}
+    for unit, paths in units.items():
+        unit.write_text("".join(f'#include "{path.resolve()}"\n' for path in paths))
+    return list(units)
 
 
 def _compile(sources, work, define=()):
@@ -116,9 +147,8 @@ def _compile(sources, work, define=()):
         level = SLOW if "Slow" in source.name else FAST
         _run([*COMPILER, level, *define, *includes, "-c", str(source.resolve()), "-o", f"{source.stem}.o"], work)
 
-    largest_first = sorted(sources, key=lambda path: -path.stat().st_size)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(one, largest_first))
+        list(pool.map(one, sources))
 
 
 def _package() -> Path:
