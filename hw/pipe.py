@@ -49,7 +49,7 @@ class Schedule:
             if self.cycle[node] is None and node.kind not in {"const", "input", *WIRES}:
                 self.cycle[node] = self._needed(node)
                 self.start[node] = self.cycle[node] - getattr(cost, node.kind)
-        self.arrival = {name: self._needed(graph.inputs[name]) for name in late}
+        self.arrival = {name: self._needed(graph.inputs[name]) for name in sorted(late)}
 
     def _earliest(self, node: Node) -> int | None:
         """None where no operand comes with the item."""

@@ -31,8 +31,8 @@ def parser() -> Parser:
                      help="float64, the circuit's integer model, or its Verilog under Verilator")
     one.add_argument("--lanes", type=lanes, metavar="P", help=f"edge processors of the circuit (rtl; {LANES})")
     one.add_argument("--waves", nargs="?", const="vcd", choices=waves.FORMATS, metavar="vcd|fst",
-                     help="write the waveforms of the circuit's first 5000 busy cycles as well (rtl; vcd, which is larger "
-                          "but needs no library)")
+                     help="write the waveforms of the circuit's first 5000 busy cycles as well "
+                          "(rtl; vcd, which is larger but needs no library)")
     one.add_argument("--out", required=True, metavar="DIR", help="folder for trajectory.npz and summary.json")
     one.set_defaults(run=run)
 

@@ -29,7 +29,7 @@ class _Ram(wiring.Component):
     def _elaborate(self, domain: str, init):
         """A module with the memory and a register behind it."""
         m = Module()
-        m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=init)
+        m.submodules.words = words = memory.Memory(shape=len(self.data), depth=max(2, self.depth), init=init)
         write, read = words.write_port(), words.read_port(domain=domain)
         word = Signal(len(self.data), reset_less=True)
         m.d.comb += [
