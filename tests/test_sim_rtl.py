@@ -1,0 +1,177 @@
+"""The simulated circuit against the compiled integer model: every bit, for any number of lanes and any order."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from integer_objects import MATERIALS, irregular, pressed, random_image
+
+from golden.errors import InputError
+from golden.formats import Formats
+from golden.mesh import Mesh
+from hw.parameters import Parameters
+from hw.registers import Control, Map, Region
+from sim.image import load, ranks
+from sim.machines import BUILD
+from sim.native import NativeMachine
+from sim.program import Program
+from sim.rtl import RtlMachine
+
+LANES = 1, 2, 4
+STATE = "x", "v", "force", "ratio"
+
+
+def circuit(lanes):
+    """All of them have the same lane, which is compiled once; with two it is the circuit that scenes are run on."""
+    return Parameters(lanes=lanes, edges=2048 * lanes)
+
+
+@pytest.fixture
+def simulated():
+    """Makes machines in the simulated circuit, and closes them."""
+    machines = []
+
+    def make(image, parameters, **kwargs):
+        machines.append(RtlMachine(image, parameters=parameters, folder=BUILD, **kwargs))
+        return machines[-1]
+
+    yield make
+    for machine in machines:
+        machine.close()
+
+
+def run(loaded, machine):
+    """The states after each phase, nodes and edges in the scene's order."""
+    nodes, edges = ranks(loaded.node_order), ranks(loaded.edge_order)
+    for phase in loaded.scene.phases:
+        machine.restart(loaded.start(phase, machine.v))
+        machine.step(phase.steps)
+        yield {name: getattr(machine, name)[edges if name == "ratio" else nodes] for name in STATE}
+
+
+def assert_same(ours, theirs):
+    for a, b in zip(ours, theirs, strict=True):
+        for name in STATE:
+            assert np.array_equal(a[name], b[name]), name
+
+
+def fan(spokes=30) -> Mesh:
+    """A hub that every edge but those of the rim meets."""
+    angle = np.arange(spokes) * 2 * np.pi / spokes
+    rim = np.stack([np.cos(angle), np.sin(angle)], 1) * 0.04
+    points = np.concatenate([[[0, 0]], rim]) + [0, 0.04]
+    outer = np.arange(1, spokes + 1)
+    cells = np.stack([np.zeros_like(outer), outer, np.roll(outer, -1)], 1)
+    edges = np.concatenate([cells[:, :2], cells[:, 1:]])
+    return Mesh(points, cells, np.unique(np.sort(edges, axis=1), axis=0))
+
+
+def scene(name, rng, steps):
+    if name == "fan":
+        return pressed(fan(), MATERIALS["rheological"], steps)
+    mesh = irregular((5, 4) if name == "2-D" else (3, 3, 3), rng)
+    edge_material = rng.integers(len(MATERIALS), size=len(mesh.edges))
+    return pressed(mesh, tuple(MATERIALS.values()), steps, edge_material=edge_material)
+
+
+def renumbered(loaded, order):
+    """The same object; its node n is what was node ``order[n]``."""
+    image = loaded.image
+    mass = {name: values[order] for name, values in image.inverse_mass.items()}
+    moved = {name: getattr(image, name)[order] for name in ("x", "v", "load")}
+    other = dataclasses.replace(image, inverse_mass=mass, edges=ranks(order)[image.edges], **moved)
+    return dataclasses.replace(loaded, image=other, node_order=loaded.node_order[order])
+
+
+@pytest.mark.parametrize("lanes", LANES)
+@pytest.mark.parametrize("name", ["2-D", "3-D", "fan"])
+def test_an_object_of_all_materials_has_the_models_bits(name, lanes, rng, simulated):
+    loaded = load(scene(name, rng, 300))
+    expected = list(run(loaded, NativeMachine(loaded.image)))
+    machine = simulated(loaded.image, circuit(lanes))
+    assert_same(run(loaded, machine), expected)
+    assert not machine.faults and (expected[0]["x"] != expected[-1]["x"]).any()
+    assert (expected[0]["ratio"] != expected[-1]["ratio"]).any()
+
+
+@pytest.mark.parametrize("lanes", LANES)
+def test_no_order_of_edges_or_nodes_changes_a_bit(lanes, rng, simulated):
+    """Edges in the reverse of the fast order, by chance, by their first ends; nodes numbered by chance and backwards."""
+    for name in ("2-D", "3-D", "fan"):
+        one = scene(name, rng, 30)
+        mesh, edges = one.mesh, len(one.mesh.edges)
+        quick = load(one)
+        expected = list(run(quick, NativeMachine(quick.image)))
+        by_node = np.lexsort(ranks(quick.node_order)[mesh.edges].T[::-1])
+        orders = quick.edge_order[::-1], rng.permutation(edges), by_node
+        objects = [load(one, edge_order=order) for order in orders]
+        nodes = len(mesh.points)
+        objects += [renumbered(load(one), order) for order in (rng.permutation(nodes), np.arange(nodes)[::-1])]
+        cycles = set()
+        for loaded in objects:
+            machine = simulated(loaded.image, circuit(lanes))
+            assert_same(run(loaded, machine), expected)
+            cycles.add(machine.cycles)
+        assert len(cycles) > 1  # the order does reach the circuit
+
+
+@pytest.mark.parametrize("lanes", LANES)
+def test_saturating_images_have_the_models_bits_and_faults(lanes, seed, simulated):
+    faults = set()
+    for number in range(8):
+        image = random_image(np.random.default_rng([seed, number]))
+        model, machine = NativeMachine(image), simulated(image, circuit(lanes))
+        for steps in (1, 1, 5):
+            model.step(steps)
+            machine.step(steps)
+            for name in STATE:
+                assert np.array_equal(getattr(machine, name), getattr(model, name)), name
+            assert set(machine.faults) == set(model.faults)
+        faults |= set(machine.faults)
+    assert len(faults) >= 10
+
+
+def test_a_run_in_pieces_is_the_same_run_and_its_cycles_add_up(rng, simulated):
+    loaded = load(scene("2-D", rng, 30))
+    model, pieces = NativeMachine(loaded.image), simulated(loaded.image, circuit(2))
+    assert pieces.cycles == 0 and not pieces.force.any()
+    for steps in (1, 3, 6):
+        before, clock = pieces.cycles, pieces.circuit.clock
+        pieces.step(steps)
+        model.step(steps)
+        assert all(np.array_equal(getattr(pieces, name), getattr(model, name)) for name in STATE)
+        counted = pieces.cycles - before
+        assert len(loaded.image.edges) / 2 * 4 * steps < counted < pieces.circuit.clock - clock
+
+
+def test_what_the_circuit_refuses_is_an_error_here(rng, simulated):
+    machine = simulated(random_image(rng), circuit(1))
+    read_only = Map(circuit(1)).address(Region.CONTROL, 0, Control.STEPS_DONE)
+    with pytest.raises(RuntimeError, match=rf"^the circuit refused a write to {read_only:#x}$"):
+        machine.circuit.write([(read_only, 5)])
+    with pytest.raises(RuntimeError, match=r"^the circuit refused to read 0xffff$"):
+        machine.circuit.read([0xFFFF])
+
+
+@pytest.mark.parametrize(("smaller", "message"), [
+    (dict(nodes=11), "nodes of the object must be at most 11 for this circuit, not 12"),
+    (dict(edges=59), "edges of the object must be at most 59 for this circuit, not 60"),
+    (dict(lanes=4, edges=55), "edges of the object must be at most 56 for this circuit, not 60"),
+    (dict(materials=7), "materials of the object must be at most 7 for this circuit, not 8"),
+    (dict(tables=2), "tables of the object must be at most 2 for this circuit, not 3"),
+    (dict(formats=Formats(16, 34)), r"formats of the object must be the circuit's Formats\(operand=16, state=34\), "
+                                    r"not Formats\(operand=18, state=36\)"),
+])
+def test_an_object_that_is_too_large_is_refused_by_name(smaller, message, rng):
+    room = dict(lanes=1, nodes=12, edges=60, materials=8, tables=3)
+    Program(random_image(rng), Parameters(**room))
+    with pytest.raises(InputError, match=f"^{message}$"):
+        Program(random_image(rng), Parameters(**room | smaller))
+
+
+def test_a_node_with_too_many_edges_is_refused(rng):
+    image = random_image(rng, nodes=40, edges=32)
+    image.edges = np.stack([np.zeros(32, int), np.arange(1, 33)], 1)
+    Program(dataclasses.replace(image, edges=image.edges[:31], edge_material=image.edge_material[:31]), circuit(1))
+    with pytest.raises(InputError, match=r"^edges at one node must be at most 31, so that no sum overflows, not 32$"):
+        Program(image, circuit(1))
