@@ -10,7 +10,6 @@ import pytest
 from cocotb_tools.runner import get_runner
 
 from hw.verilog import TOP, emit
-from sim.machines import BUILD
 
 TESTS = Path(__file__).parent
 # A module that is there twice is compiled once, all at once; the little that is run needs no optimiser
@@ -23,18 +22,16 @@ PROGRAM = {"verilator": "verilator", "icarus": "iverilog"}
 def test_the_emitted_circuit(simulator, tmp_path, monkeypatch):
     if not shutil.which(PROGRAM[simulator]):
         pytest.skip(f"{PROGRAM[simulator]} is not installed (Debian: apt install {PROGRAM[simulator]})")
-    folder = BUILD.with_name("cocotb") / simulator
-    folder.mkdir(parents=True, exist_ok=True)
-    source = folder / f"{TOP}.v"
+    source = tmp_path / f"{TOP}.v"
     source.write_text(emit(cocotb_core.PARAMETERS)[0])
     monkeypatch.setenv("MAKEFLAGS", f"{os.environ['MAKEFLAGS']} {UNOPTIMISED}")
     runner = get_runner(simulator)
     runner.build(
-        sources=[source], hdl_toplevel=TOP, build_dir=folder, build_args=ARGUMENTS[simulator], always=True,
-        timescale=("1ns", "1ps"), log_file=folder / "build.log",
+        sources=[source], hdl_toplevel=TOP, build_dir=tmp_path, build_args=ARGUMENTS[simulator], always=True,
+        timescale=("1ns", "1ps"), log_file=tmp_path / "build.log",
     )
     results = runner.test(
-        hdl_toplevel=TOP, test_module="cocotb_core", build_dir=folder, test_dir=tmp_path,
+        hdl_toplevel=TOP, test_module="cocotb_core", build_dir=tmp_path, test_dir=tmp_path,
         results_xml=str(tmp_path / "results.xml"), extra_env={"PYTHONPATH": f"{TESTS}:{TESTS.parent}"},
     )
     cases = ElementTree.parse(results).getroot().iter("testcase")

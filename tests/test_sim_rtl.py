@@ -96,7 +96,7 @@ def test_an_object_of_all_materials_has_the_models_bits(name, lanes, rng, simula
 
 @pytest.mark.parametrize("lanes", LANES)
 def test_no_order_of_edges_or_nodes_changes_a_bit(lanes, rng, simulated):
-    """Edges in the reverse of the fast order, by chance, by their first ends; nodes numbered by chance and backwards."""
+    """Edges in the reverse of the fast order, by chance, by first ends; nodes numbered by chance and backwards."""
     for name in ("2-D", "3-D", "fan"):
         one = scene(name, rng, 30)
         mesh, edges = one.mesh, len(one.mesh.edges)
