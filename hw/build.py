@@ -38,8 +38,9 @@ def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
             return False
         text, core = emit(parameters)
         text = f"{HEADER}{describe(parameters)}. Written by `python -m hw verilog`; {MANIFEST} goes with it.\n{text}"
+        about = manifest.dump(manifest.manifest(core, text, key))
         _write(folder / VERILOG, text)
-        _write(folder / MANIFEST, manifest.dump(manifest.manifest(core, text, key)))
+        _write(folder / MANIFEST, about)
     except FileExistsError:
         raise InputError(f"--out must be a folder, not the file {folder}") from None
     except OSError as error:
@@ -48,10 +49,9 @@ def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
 
 
 def describe(p: Parameters) -> str:
-    return (
-        f"{p.lanes} lane{'s' if p.lanes > 1 else ''}, {p.nodes} nodes, {p.edges} edges, {p.materials} materials, "
-        f"{p.tables} tables, {p.formats.operand}-bit operands, {p.formats.state}-bit states"
-    )
+    counts = {name: getattr(p, name) for name in p.RANGES}
+    words = [f"{count} {name if count > 1 else name.removesuffix('s')}" for name, count in counts.items()]
+    return ", ".join([*words, f"{p.formats.operand}-bit operands", f"{p.formats.state}-bit states"])
 
 
 def key_of(parameters: Parameters) -> str:

@@ -4,6 +4,7 @@ import gc
 import re
 import warnings
 from collections import Counter
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from amaranth.sim import Simulator
 
 from golden.graph import Graph
 from golden.qarray import QArray
+from hw.core import Core
 from hw.cost import Cost
 from hw.operations import shape
 from hw.pipe import Pipe, Schedule
@@ -97,11 +99,24 @@ def numbers(values: dict[str, np.ndarray], formats, faults: Counter) -> dict[str
     return {name: QArray(raw, formats[name], faults) for name, raw in values.items()}
 
 
-def refused(make, message: str):
-    """``make()`` raises ValueError with exactly this message. Amaranth would miss the component that it didn't make."""
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$") as caught:
-        make()
+@contextmanager
+def only_asked():
+    """Amaranth misses no component that is made in here and never built."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        del caught
+        yield
         gc.collect()
+
+
+def refused(make, message: str):
+    """``make()`` raises ValueError with exactly this message."""
+    with only_asked(), pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        make()
+
+
+def core_to_ask(parameters) -> Core:
+    """A circuit that is only asked, never built, and not missed by Amaranth for that."""
+    core = Core(parameters)
+    for component in (core, core.updater):
+        component._MustUse__used = True
+    return core

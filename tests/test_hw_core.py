@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hw_objects import refused, simulate
+from hw_objects import core_to_ask, refused, simulate
 from integer_objects import MATERIALS, irregular, pressed, random_image
 
 from golden.machine import Machine
@@ -148,6 +148,6 @@ def test_random_integers_and_their_faults(rng):
 
 def test_an_edge_whose_words_come_back_too_late_is_refused():
     """Late for its next stage, or for the host who reads them after the last."""
-    Core(Parameters(cost=Cost(less=11)))
+    core_to_ask(Parameters(cost=Cost(less=11)))
     refused(lambda: Core(Parameters(cost=Cost(less=12))),
             "the edge's base must be written within 111 cycles, not after 112")
