@@ -1,4 +1,4 @@
-"""The one exception a user's mistake ends in."""
+"""The one exception a user's mistake ends in, and the one for a mistake of ours."""
 
 from __future__ import annotations
 
@@ -13,3 +13,7 @@ class InputError(ValueError):
     def under(self, path: str) -> InputError:
         """The same error, `path` before it: under ``materials.gel`` it is ``materials.gel.k must be ...``."""
         return InputError(f"{path}.{self}")
+
+
+class InternalError(RuntimeError):
+    """Two models that must agree do not: a bug of this project."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
+
+from .files import replaced
 
 
 @dataclass(eq=False)
@@ -33,14 +34,8 @@ class Trajectory:
         arrays = {field.name: getattr(self, field.name) for field in fields(self)}
         if taken := arrays.keys() & meta.keys():
             raise ValueError(f"meta must have names of its own, not {', '.join(sorted(taken))}")
-        path = Path(path)
-        partial = path.with_name(f".{path.name}.{os.getpid()}")
-        try:
-            with open(partial, "wb") as file:
-                np.savez_compressed(file, allow_pickle=False, **arrays, **meta)
-            os.replace(partial, path)
-        finally:
-            partial.unlink(missing_ok=True)
+        with replaced(Path(path)) as file:
+            np.savez_compressed(file, allow_pickle=False, **arrays, **meta)
 
 
 def load(path) -> Trajectory:

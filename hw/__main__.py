@@ -6,6 +6,7 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 
+from golden.command import Parser, execute
 from golden.errors import InputError
 from golden.formats import Formats
 
@@ -23,13 +24,6 @@ CAPACITIES = {
     "materials": "materials it has room for",
     "tables": "tables of force-dependent dampers it has room for",
 }
-
-
-class Parser(argparse.ArgumentParser):
-    """One line an error, as for every other mistake of the user's."""
-
-    def error(self, message):
-        raise InputError(f"{message} (see {self.prog} --help)")
 
 
 def parser() -> Parser:
@@ -121,16 +115,8 @@ def said_meanwhile(text: str):
 
 
 def main(arguments=None) -> int:
-    """Exit code: 0, 1 for warnings of the lint, 2 for a mistake of the user's."""
-    try:
-        args = parser().parse_args(arguments)
-        return args.run(args)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return 130
+    """Exit code: that of `golden.command.execute`, or 1 for warnings of the lint."""
+    return execute(parser(), arguments)
 
 
 if __name__ == "__main__":

@@ -3,11 +3,11 @@
 import dataclasses
 import hashlib
 import json
-import os
 from importlib.metadata import version
 from pathlib import Path
 
 from golden.errors import InputError
+from golden.files import write_text
 
 from . import manifest
 from .parameters import Parameters
@@ -39,8 +39,8 @@ def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
         text, core = emit(parameters)
         text = f"{HEADER}{describe(parameters)}. Written by `python -m hw verilog`; {MANIFEST} goes with it.\n{text}"
         about = manifest.dump(manifest.manifest(core, text, key))
-        _write(folder / VERILOG, text)
-        _write(folder / MANIFEST, about)
+        write_text(folder / VERILOG, text)
+        write_text(folder / MANIFEST, about)
     except FileExistsError:
         raise InputError(f"--out must be a folder, not the file {folder}") from None
     except OSError as error:
@@ -86,12 +86,3 @@ def _refuse_strangers(folder: Path):
 def _ours(path: Path) -> bool:
     text = path.read_text(encoding="utf-8", errors="replace")
     return text.startswith(HEADER) or f'"design": "{manifest.DESIGN}"' in text[:100]
-
-
-def _write(path: Path, text: str):
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        partial.write_text(text, encoding="utf-8")
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)

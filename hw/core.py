@@ -12,16 +12,16 @@ from .blocks.memory import READ_LATENCY, BlockRam
 from .delay import DelayLines
 from .edge import EdgeDatapath
 from .fetch import Fetch
-from .host import HostPort
+from .host import HostPort, host_signature
 from .lane import NEXT, NODE_WORDS, Lane, latency
 from .parameters import Parameters
-from .registers import ADDRESS_BITS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
+from .registers import NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from .sequencer import Sequencer
 from .updater import NodeUpdater
 
 
 class Core(wiring.Component):
-    """The whole circuit behind its host port (`hw.host.HostPort`, whose first seven members these are).
+    """The whole circuit behind its host port (`hw.host.host_signature`).
 
     Parameters
     ----------
@@ -42,18 +42,8 @@ class Core(wiring.Component):
         self.faults = sorted({*self.datapath.faults, *self.updater.faults})
         self._check()
         state = parameters.formats.state
-        super().__init__(
-            {
-                "request": In(1),
-                "write": In(1),
-                "address": In(ADDRESS_BITS),
-                "write_data": In(state),
-                "answer": Out(1),
-                "error": Out(1),
-                "read_data": Out(state),
-                "busy": Out(1),
-            }
-        )
+        self._host_members = host_signature(state)
+        super().__init__({**self._host_members, "busy": Out(1)})
 
     def _check(self):
         """An edge's own words must be back before its nodes are: then it may come again, or the run is over."""
@@ -224,10 +214,9 @@ class Core(wiring.Component):
             tables.append(Mux(word[0], port.host_table[half:], port.host_table[:half]))
         for port, choices in ((host.edge_word, edges), (host.material_word, materials), (host.table_word, tables)):
             m.d.comb += port.eq(Array(choices)[lane])
-        for name in ("request", "write", "address", "write_data"):
-            m.d.comb += getattr(host, name).eq(getattr(self, name))
-        for name in ("answer", "error", "read_data"):
-            m.d.comb += getattr(self, name).eq(getattr(host, name))
+        for name, member in self._host_members.items():
+            inner, outer = getattr(host, name), getattr(self, name)
+            m.d.comb += inner.eq(outer) if member.flow == In else outer.eq(inner)
 
     def _counters(self):
         m, host, sequencer = self._m, self._host, self._sequencer

@@ -22,6 +22,19 @@ LATENCY = READ_LATENCY + 3
 """Cycles from a request to its answer: request register, decoding, the memory, answer register."""
 
 
+def host_signature(state: int) -> dict:
+    """The members that the host sees, for words of so many bits."""
+    return {
+        "request": In(1),
+        "write": In(1),
+        "address": In(ADDRESS_BITS),
+        "write_data": In(state),
+        "answer": Out(1),
+        "error": Out(1),
+        "read_data": Out(state),
+    }
+
+
 class HostPort(wiring.Component):
     """Takes a request per cycle, answers each `LATENCY` cycles later, in order.
 
@@ -49,13 +62,7 @@ class HostPort(wiring.Component):
         state = p.formats.state
         super().__init__(
             {
-                "request": In(1),
-                "write": In(1),
-                "address": In(ADDRESS_BITS),
-                "write_data": In(state),
-                "answer": Out(1),
-                "error": Out(1),
-                "read_data": Out(state),
+                **host_signature(state),
                 "index": Out(p.index_bits),
                 "data": Out(state),
                 "word": Out(WORD_BITS),

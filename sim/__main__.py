@@ -8,17 +8,11 @@ from functools import partial
 from pathlib import Path
 
 from golden import scene as scenes
+from golden.command import Parser, execute
 from golden.errors import InputError
 from sim import waves
-from sim.errors import InternalError, about
+from sim.errors import about
 from sim.run import BACKENDS, LANES
-
-
-class Parser(argparse.ArgumentParser):
-    """One line an error, as for every other mistake of the user's."""
-
-    def error(self, message):
-        raise InputError(f"{message} (see {self.prog} --help)")
 
 
 def parser() -> Parser:
@@ -102,19 +96,8 @@ def compare(args) -> int:
 
 
 def main(arguments=None) -> int:
-    """Exit code: 0, 1 when the models disagree or something saturated, 2 for a mistake of the user's."""
-    try:
-        args = parser().parse_args(arguments)
-        return args.run(args)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except InternalError as error:
-        print(f"internal error: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return 130
+    """Exit code: that of `golden.command.execute`, or 1 when models disagree or something saturated."""
+    return execute(parser(), arguments)
 
 
 if __name__ == "__main__":

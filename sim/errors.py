@@ -1,12 +1,8 @@
-"""Errors of co-simulation: whose they are, and which scene they are about."""
+"""Which scene an error is about."""
 
 from contextlib import contextmanager
 
-from golden.errors import InputError
-
-
-class InternalError(RuntimeError):
-    """Two models that must agree do not: a bug of this project."""
+from golden.errors import InputError, InternalError
 
 
 @contextmanager

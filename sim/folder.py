@@ -1,8 +1,7 @@
-"""Folders that results are written into: never somebody else's by accident, never half a file."""
+"""Folders that results are written into: never somebody else's by accident."""
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from golden.errors import InputError
@@ -27,13 +26,3 @@ def claim(path, force: bool = False) -> Path:
     except OSError as error:
         raise InputError(f"--out must be a folder that can be written, not {path}: {error.strerror}") from None
     return path
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file that appears whole or not at all."""
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        partial.write_text(text, encoding="utf-8")
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)

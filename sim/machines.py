@@ -12,10 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from golden.errors import InputError
+from golden.errors import InputError, InternalError
 from golden.image import Image
 from golden.machine import Machine
-from sim.errors import InternalError
 
 BUILD = Path(__file__).parents[1] / "build" / "rtl"
 ENGINES = "native", "numpy"

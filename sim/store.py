@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from golden.files import write_text
 from golden.problem import Scene
-from sim.folder import write_text
 from sim.run import Result
 
 

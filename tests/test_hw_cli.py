@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from hw_objects import core_to_ask, only_asked
 
+from golden import files
 from hw import __main__ as cli
 from hw import build, lint, manifest
 from hw.__main__ import main
@@ -166,12 +167,12 @@ def test_nothing_half_written(emitted, out, monkeypatch):
     def fail(*arguments):
         raise RuntimeError("no Verilog today")
 
-    def replace_but_the_manifest(source, target, replace=build.os.replace):
+    def replace_but_the_manifest(source, target, replace=files.os.replace):
         return fail() if target.name == MANIFEST else replace(source, target)
 
     for module, name, failing in (
-        (build, "emit", fail), (manifest, "manifest", fail), (build.os, "replace", fail),
-        (build.os, "replace", replace_but_the_manifest),
+        (build, "emit", fail), (manifest, "manifest", fail), (files.os, "replace", fail),
+        (files.os, "replace", replace_but_the_manifest),
     ):
         with monkeypatch.context() as patch:
             patch.setattr(module, name, failing)

@@ -2,18 +2,12 @@
 
 import numpy as np
 import pytest
+from host_port import FAULTS, MAP, MEMORIES, STATE, P, Port, content, control, use
 from hw_objects import simulate
 
-from hw.blocks.memory import READ_LATENCY
-from hw.host import LATENCY, HostPort, word_of
-from hw.parameters import Parameters
-from hw.registers import MAGIC, READ_ONLY, VERSION, Control, Map, Region, join
+from hw.host import LATENCY
+from hw.registers import MAGIC, READ_ONLY, VERSION, Control, Region, join
 
-P = Parameters(lanes=3, nodes=20, edges=31, materials=5, tables=1)
-MAP = Map(P)
-FAULTS = 6
-STATE = P.formats.state
-MEMORIES = [region for region in Region if region != Region.CONTROL]
 FIXED = {
     Control.MAGIC: MAGIC, Control.VERSION: VERSION, Control.LANES: 3, Control.NODES: 20, Control.ROWS: 11,
     Control.MATERIALS: 5, Control.TABLES: 1,
@@ -22,79 +16,6 @@ COUNTERS = {
     Control.CYCLES: ("cycles", 1 << 35), Control.ROWS_ISSUED: ("rows_issued", 12345),
     Control.ROW_WAITS: ("row_waits", 77), Control.STEPS_DONE: ("steps_done", 4_000_000_000),
 }
-
-
-def content(region, index, word, lane) -> int:
-    """What the memories behind the port hold."""
-    return hash((int(region), index, word, lane)) % (1 << STATE)
-
-
-def control(register, lane=0, word=0):
-    return join(Region.CONTROL, word, register, lane)
-
-
-class Port:
-    """A host port with memories behind it, one request at a time; remembers what reached them."""
-
-    def __init__(self):
-        self.dut = HostPort(MAP, FAULTS)
-        self.strobes, self.starts = [], 0
-        self._asked = [(0, 0, 0)] * READ_LATENCY
-
-    async def cycle(self, ctx):
-        dut = self.dut
-        for region in MEMORIES:
-            ctx.set(getattr(dut, word_of(region)), content(region, *self._asked[0]))
-        self._asked = [*self._asked[1:], tuple(ctx.get(port) for port in (dut.index, dut.word, dut.lane))]
-        if strobe := ctx.get(dut.strobe):
-            assert strobe.bit_count() == 1
-        if strobe > 1 << Region.CONTROL:
-            self.strobes.append((Region(strobe.bit_length() - 1), *self._asked[-1], ctx.get(dut.data)))
-        self.starts += ctx.get(dut.start)
-        await ctx.tick()
-
-    async def request(self, ctx, write, address, data=0):
-        """(refused, data)"""
-        dut = self.dut
-        for port, value in ((dut.write, write), (dut.address, address), (dut.write_data, data)):
-            ctx.set(port, value)
-        for cycle in range(LATENCY):
-            assert not ctx.get(dut.answer)
-            ctx.set(dut.request, cycle == 0)
-            await self.cycle(ctx)
-        assert ctx.get(dut.answer)
-        answer = bool(ctx.get(dut.error)), ctx.get(dut.read_data)
-        await self.cycle(ctx)
-        return answer
-
-    async def read(self, ctx, register):
-        refused, data = await self.request(ctx, 0, control(register))
-        assert not refused
-        return data
-
-    async def write(self, ctx, register, data):
-        refused, _ = await self.request(ctx, 1, control(register), data)
-        assert not refused
-
-    async def state(self, ctx):
-        """All that a refused request must not change."""
-        registers = [Control.FAULTS, Control.ROW_COUNT, Control.NODE_COUNT, Control.VELOCITY_SHIFT]
-        return [await self.read(ctx, r) for r in registers], list(self.strobes), self.starts, ctx.get(self.dut.steps)
-
-
-def use(scenario):
-    """Run a scenario on a port with 7 rows and 9 nodes in use."""
-    port = Port()
-
-    async def bench(ctx):
-        await port.write(ctx, Control.ROW_COUNT, 7)
-        await port.write(ctx, Control.NODE_COUNT, 9)
-        await port.write(ctx, Control.VELOCITY_SHIFT, 12)
-        await scenario(ctx, port)
-
-    simulate(port.dut, bench)
-
-
 BEYOND = {
     region: dict(index=MAP.depth(region), word=len(MAP.words(region)), lane=MAP.lanes(region)) for region in Region
 }

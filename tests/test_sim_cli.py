@@ -15,7 +15,7 @@ from sim import batch, machines, native, waves
 from sim import compare as comparison
 from sim.__main__ import main
 from sim.compare import power
-from sim.folder import MARK, write_text
+from sim.folder import MARK
 from sim.run import LANES, run
 
 ROOT = Path(__file__).parents[1]
@@ -243,14 +243,6 @@ def test_an_interrupt_is_quiet(scene, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(model, "simulate", interrupted)
     assert main(["run", scene, "--backend", "float", "--out", str(tmp_path / "out")]) == 130
     assert lines(capsys) == ([], ["interrupted"])
-
-
-def test_a_file_is_whole_or_not_there(tmp_path):
-    path = tmp_path / "summary.json"
-    write_text(path, "old")
-    with pytest.raises(UnicodeEncodeError):
-        write_text(path, "\ud800")
-    assert path.read_text() == "old" and list(tmp_path.iterdir()) == [path]
 
 
 def test_the_command_itself(scene, tmp_path):

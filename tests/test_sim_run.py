@@ -7,12 +7,11 @@ import pytest
 from sim_objects import DT, MATERIALS, MESHES, block, in_place_of_the_circuit
 
 from golden import materials
-from golden.errors import InputError
+from golden.errors import InputError, InternalError
 from golden.formats import Formats
 from golden.machine import Machine
 from sim import machines
 from sim.compare import BOUND
-from sim.errors import InternalError
 from sim.run import CHECKS, Raw, checked_steps, run
 from sim.waves import found
 

@@ -7,10 +7,10 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from golden.files import write_text
 from golden.problem import Scene
 from sim.compare import compare, power, shortcomings
 from sim.errors import about
-from sim.folder import write_text
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,21 @@
+"""Files are there whole or not at all."""
+
+import pytest
+
+from golden.files import replaced, write_text
+
+
+def test_a_file_is_whole_or_not_there(tmp_path):
+    path = tmp_path / "summary.json"
+    with pytest.raises(UnicodeEncodeError):
+        write_text(path, "\ud800")
+    assert not list(tmp_path.iterdir())
+    write_text(path, "old")
+    with pytest.raises(KeyboardInterrupt), replaced(path) as file:
+        file.write(b"new")
+        file.flush()
+        assert path.read_text() == "old"
+        raise KeyboardInterrupt
+    assert path.read_text() == "old" and list(tmp_path.iterdir()) == [path]
+    write_text(path, "new")
+    assert path.read_text() == "new" and list(tmp_path.iterdir()) == [path]
