@@ -79,6 +79,7 @@ class Core(wiring.Component):
             bits = [bit[names.index(name)] for names, bit in sources if name in names]
             m.d.comb += fault[number].eq(Cat(*bits).any())
         m.d.comb += self._host.fault.eq(fault)
+        self._lines.build()
         return m
 
     def _entries(self, name, record, depth, fetch_address):

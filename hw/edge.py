@@ -96,6 +96,7 @@ class EdgeProcessor(wiring.Component):
         pipe = Pipe(m, self.datapath.schedule, inputs, self.valid, tables)
         m.d.comb += [getattr(self, name).eq(pipe.output(name)) for name in graph.outputs]
         m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.datapath.faults))
+        pipe.build()
         return m
 
     def _inverse(self, m):

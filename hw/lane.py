@@ -109,6 +109,7 @@ class Lane(wiring.Component):
             self.host_table.eq(edge.table_word),
             self.fault.eq(edge.fault),
         ]
+        self._lines.build()
         return m
 
     def _later(self, name: str, cycle: int):

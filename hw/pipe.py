@@ -78,7 +78,7 @@ class Schedule:
 
 
 class Pipe:
-    """The registers and multipliers of a scheduled graph, written into a module.
+    """The registers and multipliers of a scheduled graph, written into a module; `build` ends it.
 
     Parameters
     ----------
@@ -113,6 +113,10 @@ class Pipe:
         """The value of an output in its cycle, or delayed to a later one."""
         node = self._schedule.graph.outputs[name]
         return self.at(node, self._schedule.cycle[node] if cycle is None else cycle)
+
+    def build(self):
+        """The delay lines, when all outputs have been asked for."""
+        self._delays.build()
 
     def valid(self, cycle: int):
         """1 when the item that is in ``cycle`` is a valid one."""

@@ -108,6 +108,8 @@ class NodeUpdater(wiring.Component):
         pipe = Pipe(m, self.schedule, inputs, self._later(self.valid, 0))
         self._write_back(pipe, memories)
         m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.faults))
+        pipe.build()
+        self._lines.build()
         return m
 
     def _later(self, value, cycle: int):

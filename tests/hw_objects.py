@@ -56,6 +56,7 @@ class Piped(wiring.Component):
         pipe = Pipe(m, self._schedule, inputs, self.valid)
         m.d.comb += [getattr(self, name).eq(pipe.output(name, self.latency)) for name in self._graph.outputs]
         m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.faults))
+        pipe.build()
         return m
 
 
