@@ -1,6 +1,6 @@
 """Vectors that share one exponent, and the arithmetic that goes with them, over any number type."""
 
-from .qformat import Q
+from .qformat import Q, unsigned
 
 
 def normalise(vector, operand: int):
@@ -18,6 +18,16 @@ def normalise(vector, operand: int):
     return [x.to(mantissa, left=shift) for x in vector], shift
 
 
+def magnitude(x, operand: int):
+    """``|x|``, its mantissa in [1/2, 1) and the shift: ``|x| = mantissa * 2**(x.fmt.int_bits - 1 - shift)``.
+
+    The shift is that of ``x``, so that it is known as soon as ``|x|`` is; it makes a power of two below 0 a mantissa of
+    1, which saturates to the one before.
+    """
+    size = abs(x)
+    shift = x.lead([x], x.fmt.width - 1 - operand)
+    return size, size.scale(1 - x.fmt.int_bits).to(unsigned(0, operand), left=shift), shift
+
 
 def difference(a, b):
     """``a - b``, component by component."""
@@ -25,16 +35,7 @@ def difference(a, b):
 
 
 def dot(a, b):
-    return total_of([p * q for p, q in zip(a, b, strict=True)])
-
-
-def total_of(terms):
-    """The sum, as a tree: its depth is what it costs in time."""
-    terms = list(terms)
-    while len(terms) > 1:
-        pairs = [a + b for a, b in zip(terms[::2], terms[1::2], strict=False)]
-        terms = pairs + terms[len(pairs) * 2 :]
-    return terms[0]
+    return a[0].total([p * q for p, q in zip(a, b, strict=True)])
 
 
 def clamp(x, low, high):

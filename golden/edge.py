@@ -3,8 +3,8 @@
 A block-normalised quantity ``q`` is a mantissa and a shift: its value is ``q * 2**-q_shift``.
 """
 
-from .block import clamp, difference, dot, normalise, with_sign
-from .rk4 import rk4
+from .block import clamp, difference, dot, magnitude, normalise, with_sign
+from .rk4 import rk4, weigh
 
 
 def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
@@ -49,8 +49,7 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
     dashpot = (material.c * rate).to(fmt.trial, right=w_shift + material.c_shift)
     trial = spring + dashpot
     negative = trial < 0
-    size = abs(trial)
-    (g,), g_shift = normalise([size.scale(-2)], fmt.operand)
+    size, g, g_shift = magnitude(trial, fmt.operand)
 
     # rho(|g|) and sigma(|g|): constants outside the middle branch of (7), a table inside
     branch = damper(fmt, tables, material, size, g, g_shift)
@@ -59,15 +58,18 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
     # f = -rho g along u
     f = (rho * g).to(fmt.mantissa)
     f_shift = g_shift + rho_shift + material.force_shift
-    pull = [with_sign(negative, (f * c).to(fmt.force, right=f_shift)) for c in u]
+    along = [with_sign(negative, c).to(fmt.direction) for c in u]
+    pull = [(f * c).to(fmt.force, right=f_shift) for c in along]
 
     # adot = ((1 - a) ldot - sigma g) / l
     s = (sigma * g).to(fmt.mantissa)
     s_shift = g_shift + sigma_shift + material.creep_shift
-    creep = with_sign(negative, s.to(fmt.creep, right=s_shift))
+    creep = s.to(fmt.creep, right=s_shift)
     extension = ((1 - share).to(fmt.share) * rate).to(fmt.creep, right=w_shift)
-    (net,), net_shift = normalise([extension - creep], fmt.operand)
-    slope = (net * inverse).scale(-span).to(fmt.ratio, right=net_shift + velocity_shift - l_shift)
+    (net,), net_shift = normalise([negative.select(extension + creep, extension - creep)], fmt.operand)
+    weighted, weight_shift = weigh(stage, inverse)
+    slope_shift = net_shift + (weight_shift + velocity_shift - l_shift)
+    slope = (net * weighted).scale(-span).to(fmt.ratio, right=slope_shift)
 
     total, value = rk4(stage, state.base, state.total, slope)
     total_next = total.to(fmt.ratio)
@@ -108,9 +110,9 @@ def interpolate_inverse(fmt, tables, square):
 def damper(fmt, tables, material, size, g, g_shift):
     """rho and sigma, each a mantissa and a shift, at |g| = size, whose mantissa is g."""
     # Where |g| lies among the table's segments: octaves and the fraction of one, which is linear in |g|
-    octaves = fmt.trial_octaves - g_shift + (g.scale(1) - 1)
-    finest = fmt.octave.frac_bits
-    place = (octaves - material.first_octave).scale(finest).to(fmt.place, right=material.coarseness)
+    octave_fraction = g.field(0, fmt.octave_fraction)
+    octaves = octave_fraction - (g_shift + material.first_octave)
+    place = octaves.scale(fmt.octave.frac_bits).to(fmt.place, right=material.coarseness)
     segment = place.field(fmt.place.frac_bits, fmt.damper_index)
     fraction = place.field(0, fmt.damper_fraction)
     word = tables.damper(material.table, segment)

@@ -162,16 +162,21 @@ class Formats:
         so it has no name and its saturation is no fault."""
         return unsigned(self.damper_index.width, self.damper_fraction.width)
 
-    octave = unsigned(5, 9, name="octave", unit="octave")
-    """A place on the logarithmic axis of |g|: octaves, and the finest segments of one."""
+    octave = Q(6, 9, name="octave", unit="octave")
+    """A place on the logarithmic axis of |g|: octaves above the full scale, and the finest segments of one."""
+
+    @cached_property
+    def octave_fraction(self):
+        """A mantissa's bits behind its first, which is 1."""
+        return unsigned(0, self.mantissa.width - 1)
 
     coarseness = unsigned(3, 0, name="coarseness", unit="log2")
     """Segments of a table are this many octaves of two longer than the finest."""
 
     @cached_property
     def trial_octaves(self):
-        """Octaves of |g| over which its mantissa is normalised: |g| = 2**-trial_octaves * 2 is the lowest."""
-        return (self.trial + self.trial).width - self.operand
+        """Octaves below the full scale over which the mantissa of |g| is normalised."""
+        return (self.trial + self.trial).width - 1 - self.operand
 
     def all(self) -> list[Q]:
         """Every format, in the order of this file."""

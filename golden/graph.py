@@ -7,10 +7,10 @@ are made from it, so neither repeats an equation.
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 
-from .qformat import BIT, Q, count, smallest
+from .qformat import BIT, Q, count, smallest, total
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Node:
     """A number of the datapath (`golden.qarray`): the operation that makes it, its operands and its format.
 
@@ -24,6 +24,9 @@ class Node:
     operands: tuple["Node", ...]
     detail: object = None
     name: str = ""
+
+    def __repr__(self):  # without the operands: a graph has far more paths than nodes
+        return f"<{self.kind} {self.name}>"
 
     def _number(self, other, beside=None) -> "Node":
         if isinstance(other, Node):
@@ -54,6 +57,10 @@ class Node:
 
     def __lt__(self, other):
         return self._make("less", BIT, self, self._number(other))
+
+    @staticmethod
+    def total(terms):
+        return terms[0]._make("sum", total(x.fmt for x in terms), *terms)
 
     def select(self, yes, no):
         yes, no = self._number(yes, no), self._number(no, yes)

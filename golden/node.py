@@ -1,7 +1,7 @@
 """The datapath of a node: Newton's law and one Runge-Kutta stage, over any number type (`golden.qarray`)."""
 
-from .block import normalise, total_of
-from .rk4 import rk4
+from .block import normalise
+from .rk4 import rk4, sixth, weigh
 
 
 def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
@@ -27,12 +27,17 @@ def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
         Every named quantity below. The outputs are ``force``, ``x``, ``v`` (for the next stage), ``x_base_next``,
         ``v_base_next``, ``x_total`` and ``v_total``.
     """
-    edges = [total_of(component) for component in zip(*pulls, strict=True)]
-    force = [(pull + weight).to(fmt.accumulator) for pull, weight in zip(edges, load, strict=True)]
-    unit = [c.scale(1 - fmt.accumulator.int_bits) for c in force]
-    mantissa, shift = normalise(unit, fmt.operand)
-    acceleration = [(inverse_mass.value * c).to(fmt.velocity, right=shift + inverse_mass.shift) for c in mantissa]
-    displacement = [c.to(fmt.displacement, right=velocity_shift) for c in state.v]
+    whole_force = fmt.accumulator + fmt.accumulator  # all pulls together still fit an accumulator
+    sums = [load[0].total(terms).to(whole_force) for terms in zip(*pulls, load, strict=True)]
+    force = [c.to(fmt.accumulator) for c in sums]
+    span = whole_force.int_bits - 1
+    mantissa, shift = normalise([c.scale(-span) for c in sums], fmt.operand)
+    factor, factor_shift = weigh(stage, inverse_mass.value)
+    slope_shift = shift + (factor_shift + inverse_mass.shift)
+    products = [(factor * c).scale(span + 1 - fmt.accumulator.int_bits) for c in mantissa]
+    acceleration = [c.to(fmt.velocity, right=slope_shift) for c in products]
+    whole = [c.to(fmt.displacement, right=velocity_shift) for c in state.v]
+    displacement = [stage.last.select(sixth(c), c) for c in whole]
 
     x, x_base_next, x_total = advance(stage, state.x_base, state.x_total, displacement, fmt.position, fmt.displacement)
     v, v_base_next, v_total = advance(stage, state.v_base, state.v_total, acceleration, fmt.velocity, fmt.velocity)

@@ -8,13 +8,13 @@ from collections import Counter
 
 import numpy as np
 
-from .qformat import BIT, Q, count, smallest
+from .qformat import BIT, Q, count, smallest, total
 
 
 class QArray:
     """Integers ``raw`` (int64, any shape) standing for ``raw * 2**-fmt.frac_bits``.
 
-    ``+ - * abs() < scale select field`` are exact. Only `to` rounds, and a saturation there is counted in
+    ``+ - * abs() < total scale select field`` are exact. Only `to` rounds, and a saturation there is counted in
     ``faults`` under the name of the format; a format without a name saturates without a word.
     """
 
@@ -74,6 +74,12 @@ class QArray:
     def __lt__(self, other):
         a, b = self._aligned(self._number(other))
         return self._new((a < b).astype(np.int64), BIT)
+
+    @staticmethod
+    def total(terms) -> "QArray":
+        """The sum of all ``terms``."""
+        frac = max(x.fmt.frac_bits for x in terms)
+        return terms[0]._new(sum(x.raw << frac - x.fmt.frac_bits for x in terms), total(x.fmt for x in terms))
 
     def select(self, yes, no):
         """``yes`` where this bit is 1, ``no`` where it is 0, in the format that holds both."""

@@ -1,7 +1,7 @@
 """Fixed-point formats: the algebra of widths, and nothing else."""
 
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, reduce
 
 
 @dataclass(frozen=True)
@@ -96,6 +96,13 @@ def unsigned(int_bits: int, frac_bits: int, **kwargs) -> Q:
 
 
 BIT = unsigned(1, 0)
+
+
+def total(formats) -> Q:
+    """The format of an exact sum of numbers in these formats."""
+    formats = list(formats)
+    both = reduce(Q.union, formats)
+    return Q(both.int_bits + (len(formats) - 1).bit_length(), both.frac_bits, both.signed)
 
 
 def smallest(raw: int) -> Q:

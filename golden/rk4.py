@@ -43,11 +43,18 @@ RK4 = Tableau(reach=(Fraction(1, 2), Fraction(1, 2), Fraction(1)), weight=tuple(
 def rk4(stage, base, total, slope):
     """One stage: (the weighted sum of slopes so far, the value the next stage is evaluated at).
 
-    After the last stage the value is the new base. Nothing is rounded but in `sixth`.
+    In the last stage ``slope`` is a sixth of the slope (`weigh`), the value is the new base and the sum means nothing:
+    so the long way from a slope to a value is one addition, in every stage. Nothing is rounded but in `sixth`.
     """
+    start = stage.last.select(base + sixth(total), base)
+    value = start + stage.half.select(slope.scale(-1), slope)
     total = stage.first.select(0, total) + stage.double.select(slope.scale(1), slope)
-    increment = stage.last.select(sixth(total), stage.half.select(slope.scale(-1), slope))
-    return total, base + increment
+    return total, value
+
+
+def weigh(stage, factor):
+    """(``factor`` of a slope, in the last stage a sixth of it; a shift to be added to the slope's)."""
+    return stage.last.select(sixth(factor).scale(2), factor).to(factor.fmt), stage.last.scale(1)
 
 
 def sixth(x):

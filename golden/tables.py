@@ -6,6 +6,7 @@ the chord's.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import floor
 from types import SimpleNamespace
 
 import numpy as np
@@ -53,17 +54,16 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
     ValueError
         If the branch starts below the octaves that the datapath normalises, or is too steep for the table.
     """
-    lowest = 2.0 ** (1 - fmt.trial_octaves)
+    lowest = 2.0**-fmt.trial_octaves
     if g1 < lowest:
         raise ValueError(f"g1 must be at least {lowest:g} of the trial force's full scale, not {g1:g}")
-    first, last = (octave(g / lowest) for g in (g1, g2))
+    first, last = octave(g1), octave(g2)
     segments = 1 << fmt.damper_index.width
     finest = fmt.octave.frac_bits
-    per_octave = next(2**p for p in range(finest, -1, -1) if int(last * 2**p) - int(first * 2**p) < segments)
-    start = np.floor(first * per_octave) / per_octave
-    used = int(last * per_octave) - int(first * per_octave) + 1
-    places = start + np.arange(segments + 1) / per_octave
-    g = lowest * octave_inverse(places)
+    per_octave = next(2**p for p in range(finest, -1, -1) if floor(last * 2**p) - floor(first * 2**p) < segments)
+    start = floor(first * per_octave) / per_octave
+    used = floor(last * per_octave) - floor(first * per_octave) + 1
+    g = octave_inverse(start + np.arange(segments + 1) / per_octave)
     words = {}
     for name, curve, sign in (("rho", rho, -1), ("sigma", sigma, 1)):
         value, change = _lines(curve, g[:-1], g[1:])
@@ -79,7 +79,7 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
 
 
 def octave(x):
-    """The logarithm that the circuit computes: exponent plus fraction of the mantissa, x >= 1."""
+    """The logarithm that the circuit computes: exponent plus fraction of the mantissa."""
     mantissa, exponent = np.frexp(x)
     return exponent - 1 + (2 * mantissa - 1)
 

@@ -2,7 +2,10 @@
 
 from dataclasses import dataclass
 
+from golden.graph import Node
+
 from .blocks.memory import READ_LATENCY
+from .operations import step_count
 
 
 @dataclass(frozen=True)
@@ -10,7 +13,7 @@ class Cost:
     """Registers behind each kind of operation of `golden.graph` (0: it shares the next operation's cycle).
 
     An operation in several steps (`hw.operations`) gets its registers behind its last steps; those that it has more
-    than steps follow as a delay.
+    than steps follow as a delay. A sum has them behind each addition of three numbers.
 
     Raises
     ------
@@ -24,11 +27,17 @@ class Cost:
     abs: int = 1
     less: int = 1
     select: int = 0
+    sum: int = 1
     lead: int = 2
     shift_left: int = 1
-    round: int = 1
-    shift_right: int = 3
+    round: int = 0
+    shift_right: int = 2
     read: int = READ_LATENCY
+
+    def of(self, node: Node) -> int:
+        """Cycles from a node's operands to its value."""
+        registers = getattr(self, node.kind)
+        return registers * step_count(node) if node.kind == "sum" else registers
 
     def __post_init__(self):
         if self.mul < 2:

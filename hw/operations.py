@@ -7,6 +7,7 @@ says it once.
 """
 
 import functools
+import itertools
 import operator
 
 from amaranth.hdl import Cat, Const, Mux, Shape, Value
@@ -45,6 +46,14 @@ def _pair(node, a, b):
 def add(wire, node, a, b):
     x, y = _pair(node, a, b)
     yield (x + y,)
+
+
+def total(wire, node, *terms):
+    """Three by three: synthesis makes one carry chain of each three."""
+    terms = aligned(*((x, operand.fmt) for x, operand in zip(terms, node.operands, strict=True)))
+    while len(terms) > 3:
+        terms = yield tuple(wire(sum(terms[first : first + 3])) for first in range(0, len(terms), 3))
+    yield (sum(terms),)
 
 
 def sub(wire, node, a, b):
@@ -128,23 +137,33 @@ def shift_right(wire, node, x, count):
 def _saturate(target: Q, rounded, floor):
     """(result, fault): see `golden.qarray.QArray.to`."""
     result, faults = rounded, []
-    if _extremes(rounded)[1] > target.raw_max:
-        high = Const(target.raw_max, shape(target))
-        result = Mux(rounded > high, high, result)
-    if _extremes(floor)[1] > target.raw_max:
-        faults.append(floor > target.raw_max)
-    if _extremes(rounded)[0] < target.raw_min:
-        faults.append(rounded < target.raw_min)
-        result = Mux(faults[-1], Const(target.raw_min, shape(target)), result)
+    if not never(above := _above(target, rounded)):
+        result = Mux(above, Const(target.raw_max, shape(target)), result)
+    if not never(above := _above(target, floor)):
+        faults.append(above)
+    if not never(below := _below(target, rounded)):
+        faults.append(below)
+        result = Mux(below, Const(target.raw_min, shape(target)), result)
     return result, functools.reduce(operator.or_, faults) if faults else Const(0)
 
 
-def _extremes(value: Value) -> tuple[int, int]:
-    q = Q(len(value), 0, value.shape().signed)
-    return q.raw_min, q.raw_max
+def _above(target: Q, value: Value) -> Value:
+    """Whether ``value`` is above the target's range: a positive number with one of the bits beyond."""
+    magnitude = len(value) - value.shape().signed
+    beyond = value[min(target.width - target.signed, magnitude) : magnitude]
+    return ~negative(value) & beyond.any() if len(beyond) else Const(0)
+
+
+def _below(target: Q, value: Value) -> Value:
+    """Whether ``value`` is below the target's range: a negative number without one of the bits beyond."""
+    if not target.signed:
+        return negative(value)
+    beyond = value[min(target.width, len(value)) - 1 : -1]
+    return negative(value) & ~beyond.all() if len(beyond) and value.shape().signed else Const(0)
 
 
 STEPS = {
+    "sum": total,
     "add": add,
     "sub": sub,
     "less": less,
@@ -156,8 +175,11 @@ STEPS = {
     "shift_right": shift_right,
 }
 
-STEP_COUNT = {"lead": 2, "shift_right": 3}
-"""Steps of the operations that have more than one."""
+def step_count(node) -> int:
+    """Steps of a node's operation."""
+    if node.kind == "sum":
+        return next(steps for steps in itertools.count(1) if 3**steps >= len(node.operands))
+    return {"lead": 2, "shift_right": 3}.get(node.kind, 1)
 
 
 def field(node, x):

@@ -9,7 +9,7 @@ from golden.graph import Graph, Node
 from .blocks.multiplier import Multiplier
 from .cost import Cost
 from .delay import DelayLines
-from .operations import STEP_COUNT, STEPS, field, never, shape
+from .operations import STEPS, field, never, shape, step_count
 
 WIRES = {"scale", "field", "part"}
 """Operations that are only another reading of the same bits."""
@@ -48,7 +48,7 @@ class Schedule:
         for node in reversed(graph.nodes):
             if self.cycle[node] is None and node.kind not in {"const", "input", *WIRES}:
                 self.cycle[node] = self._needed(node)
-                self.start[node] = self.cycle[node] - getattr(cost, node.kind)
+                self.start[node] = self.cycle[node] - cost.of(node)
         self.arrival = {name: self._needed(graph.inputs[name]) for name in sorted(late)}
 
     def _earliest(self, node: Node) -> int | None:
@@ -61,7 +61,7 @@ class Schedule:
         if not ready or node.kind in WIRES:
             return max(ready, default=None)
         self.start[node] = max(ready)
-        return self.start[node] + getattr(self.cost, node.kind)
+        return self.start[node] + self.cost.of(node)
 
     def _needed(self, node: Node) -> int:
         """The first cycle in which an operation takes this node, directly or through wires; at the latest the last."""
@@ -163,7 +163,7 @@ class Pipe:
             self._m.d.comb += signal.eq(value)
             return signal
 
-        count, cost = STEP_COUNT.get(node.kind, 1), self._schedule.cycle[node] - self._schedule.start[node]
+        count, cost = step_count(node), self._schedule.cycle[node] - self._schedule.start[node]
         steps = STEPS[node.kind](wire, node, *operands)
         values = next(steps)
         for step in range(1, count):

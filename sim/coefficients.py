@@ -53,8 +53,8 @@ def coefficients(
     ends = {}
     for end, c2 in (("low", material.c_max), ("high", material.c_min)):
         ends[end] = 1 / (1 + material.c1 / c2), 1 / (material.c1 + c2)
-    # |g| = 4 g 2^-g_shift full scales; the creep rate in velocity full scales
-    creep = 4 * full / units.velocity
+    # |g| = 2 g 2^-g_shift full scales; the creep rate in velocity full scales
+    creep = 2 * full / units.velocity
     creep_shift = coefficient(creep * ends["high"][1], formats)[1]
     largest = formats.threshold.raw_max * formats.threshold.lsb
     g1, g2 = (
@@ -85,7 +85,7 @@ def coefficients(
         "k": k, "k_shift": k_shift, "c": c, "c_shift": c_shift,
         "a_min": ratio(material.a_min, formats), "a_max": ratio(material.a_max, formats),
         "g1": round(g1 / formats.threshold.lsb), "g2": round(g2 / formats.threshold.lsb),
-        "force_shift": round(log2(units.force / full)) - 2, "creep_shift": creep_shift,
+        "force_shift": round(log2(units.force / full)) - 1, "creep_shift": creep_shift,
         "first_octave": words.first_octave if words else 0,
         "coarseness": words.coarseness if words else 0,
         "table": table if words else 0,

@@ -81,6 +81,8 @@ class _Program:
                 return self._places[node.name]
             case "const":
                 return str(node.detail)
+            case "sum":
+                return " + ".join(_aligned(*node.operands))
             case "add" | "sub" | "less":
                 return f" {OPERATORS[node.kind]} ".join(_aligned(*node.operands))
             case "mul":

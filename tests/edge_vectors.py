@@ -126,8 +126,7 @@ def sensible(rng, formats, fmt, n):
     g1 = 2.0 ** rng.uniform(-12, -1, n) * rng.choice([0, 1], n, p=[0.2, 0.8])
     values["material_g1"] = raw(g1, fmt.threshold)
     values["material_g2"] = raw(np.minimum(g1 * 2.0 ** rng.uniform(0, 4, n), 1.9), fmt.threshold)
-    lowest = 2.0 ** (1 - fmt.trial_octaves)
-    values["material_first_octave"] = raw(octave(np.maximum(g1, lowest) / lowest), fmt.octave)
+    values["material_first_octave"] = raw(octave(np.maximum(g1, 2.0**-fmt.trial_octaves)), fmt.octave)
     values["material_coarseness"] = rng.integers(0, 4, n)
     values["material_table"] = np.zeros(n, np.int64)
     return values
@@ -187,9 +186,10 @@ def on_boundaries(rng, inputs, model, fmt, rows):
     inputs["material_g1"][rows[second]] = at[second] // 2
     inputs["material_g2"][rows[second]] = at[second]
 
-    finer = model.values["octaves"].fmt.frac_bits - fmt.octave.frac_bits
+    finest = fmt.octave.frac_bits
+    octaves = (model["octave_fraction"] >> fmt.octave_fraction.width - finest) - (model["g_shift"] << finest)
     segment = rng.choice([0, 1, 2, 255, 256, 511, 512], len(rows)) << coarseness
-    start = np.clip(beside(rng, (model["octaves"] >> finer) - segment), fmt.octave.raw_min, fmt.octave.raw_max)
+    start = np.clip(beside(rng, octaves - segment), fmt.octave.raw_min, fmt.octave.raw_max)
     inputs["material_first_octave"][rows[place]] = start[place]
     inputs["material_g1"][rows[place]] = 0  # so that the table is what is taken
     inputs["material_g2"][rows[place]] = fmt.threshold.raw_max

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from integer_objects import random_raw
 
-from golden.block import clamp, difference, dot, normalise, total_of, with_sign
+from golden.block import clamp, difference, dot, magnitude, normalise, with_sign
 from golden.qarray import QArray
 from golden.qformat import BIT, Q, unsigned
 
@@ -61,6 +61,18 @@ def test_a_vector_must_be_wider_than_its_mantissas():
         normalise([number([1], Q(1, 17))], 18)
 
 
+def test_a_magnitude_is_its_mantissa_times_a_power_of_two(rng):
+    q, operand = Q(2, 35), 18
+    raw = np.concatenate([random_raw(rng, q, 5000) >> rng.integers(0, 36, 5000), [0, 1, -1, q.raw_min, q.raw_max]])
+    raw = np.concatenate([raw, 1 << np.arange(36), -(1 << np.arange(36))])
+    size, mantissa, shift = magnitude(number(raw, q), operand)
+    assert np.array_equal(size.raw, abs(raw))
+    value = np.ldexp(mantissa.to_float(), 1 - shift.raw)
+    error = np.abs(value - np.ldexp(abs(raw).astype(float), -35))
+    assert (error <= np.ldexp(1.0, 1 - shift.raw - operand)).all()  # half a step, a whole one where 1 saturates
+    assert ((mantissa.raw >= 1 << operand - 1) | (shift.raw == shift.raw.max())).all()
+
+
 def test_difference_dot_and_total_are_exact(rng):
     q = Q(1, 17)
     a, b = ([number(random_raw(rng, q, 1000), q) for _ in range(3)] for _ in range(2))
@@ -68,7 +80,7 @@ def test_difference_dot_and_total_are_exact(rng):
         assert np.array_equal(z.raw, x.raw - y.raw)
     assert np.array_equal(dot(a, b).raw, sum(x.raw * y.raw for x, y in zip(a, b, strict=True)))
     for many in range(1, 4):
-        assert np.array_equal(total_of(a[:many]).raw, sum(x.raw for x in a[:many]))
+        assert np.array_equal(a[0].total(a[:many]).raw, sum(x.raw for x in a[:many]))
 
 
 def test_clamp_keeps_a_number_between_its_bounds():

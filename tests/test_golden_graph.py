@@ -64,6 +64,8 @@ def apply(n, x, inputs, contents, faults):
             return x[0] + x[1]
         case "sub":
             return x[0] - x[1]
+        case "sum":
+            return QArray.total(x)
         case "mul":
             return x[0] * x[1]
         case "abs":

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from golden.qarray import QArray
-from golden.qformat import BIT, Q
-from golden.rk4 import RK4, Tableau, rk4, sixth
+from golden.qformat import BIT, Q, unsigned
+from golden.rk4 import RK4, Tableau, rk4, sixth, weigh
 
 F = Fraction
 
@@ -74,9 +74,22 @@ def test_four_stages_make_a_step(rng):
     total, exact = QArray(rng.integers(-5, 5, 500), q, None), base.to_float()
     for number, slope in enumerate(slopes):
         stage = SimpleNamespace(**{name: QArray(np.int64(b), BIT, None) for name, b in RK4.stage(number).items()})
-        total, value = rk4(stage, base, total, slope)
+        weighted = sixth(slope) if number == 3 else slope
+        total, value = rk4(stage, base, total, weighted)
         if number < 3:  # exact: where the next stage is evaluated
             assert np.array_equal(value.to_float(), exact + float(RK4.reach[number]) * slope.to_float())
     step = sum(float(w) * k.to_float() for w, k in zip(RK4.weight, slopes, strict=True))
-    bound = 2**-6 * q.lsb + 2**-32 * np.abs(step)  # that of a sixth
+    bound = 2 * (2**-6 * q.lsb + 2**-32 * np.abs(step))  # that of a sixth, for the last slope and for the others
     assert (np.abs(value.to_float() - (exact + step)) <= bound + 4 * np.finfo(float).eps).all()
+
+
+def test_a_factor_is_weighed_in_the_last_stage_only(rng):
+    q = unsigned(0, 18)
+    x = QArray(rng.integers(1 << 17, 1 << 18, 1000), q, None)
+    for number in range(RK4.stages):
+        stage = SimpleNamespace(**{name: QArray(np.int64(b), BIT, None) for name, b in RK4.stage(number).items()})
+        factor, shift = weigh(stage, x)
+        weight = float(RK4.weight[-1]) if number == RK4.stages - 1 else 1.0
+        value = factor.to_float() * 2.0 ** -shift.to_float()
+        assert factor.fmt == q and shift.to_float() == (2 if weight < 1 else 0)
+        assert (np.abs(value - weight * x.to_float()) <= (q.lsb * 2.0**-3 * 1.05 if weight < 1 else 0)).all()

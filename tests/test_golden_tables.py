@@ -8,7 +8,7 @@ import pytest
 from integer_objects import MATERIALS
 
 from golden import records
-from golden.block import normalise
+from golden.block import magnitude
 from golden.edge import damper, interpolate_inverse
 from golden.formats import Formats
 from golden.materials import PRESETS, solve_damper
@@ -76,14 +76,14 @@ class Lookup:
 
     def __call__(self, g):
         """(|g| as the datapath has it, rho, sigma)"""
-        size = number(np.ldexp(g / self.full, FMT.trial.frac_bits), abs(FMT.trial + FMT.trial), self.faults)
-        (mantissa,), shift = normalise([size.scale(-2)], FMT.operand)
+        trial = number(np.ldexp(g / self.full, FMT.trial.frac_bits), FMT.trial + FMT.trial, self.faults)
+        size, mantissa, shift = magnitude(trial, FMT.operand)
         tables = Tables(FMT, inverse_table(FMT), stack([self.table.words], FMT))
         record = {name: number(self.record[name], q, self.faults) for name, q in records.material(FMT, 1).items()}
         got = damper(FMT, tables, SimpleNamespace(**record), size, mantissa, shift)
         rho = np.ldexp(got["rho"].to_float(), -got["rho_shift"].raw)
         creep = np.ldexp(got["sigma"].to_float(), -(got["sigma_shift"].raw + self.record["creep_shift"]))
-        return size.to_float() * self.full, rho, creep * self.units.velocity / (4 * self.full)
+        return size.to_float() * self.full, rho, creep * self.units.velocity / (2 * self.full)
 
     def everywhere(self):
         """Trial forces over the whole range, every segment's inside, and closely around both kinks."""
@@ -117,7 +117,7 @@ def test_outside_the_branch_the_constants_are_exact(name):
         assert (rho == np.ldexp(FMT.mantissa.lsb * record[f"rho_{end}"], -record[f"rho_{end}_shift"])).all()
         creep = np.ldexp(FMT.mantissa.lsb * record[f"sigma_{end}"],
                          -(record[f"sigma_{end}_shift"] + record["creep_shift"]))
-        np.testing.assert_allclose(sigma, creep * lookup.units.velocity / (4 * lookup.full), rtol=1e-15)
+        np.testing.assert_allclose(sigma, creep * lookup.units.velocity / (2 * lookup.full), rtol=1e-15)
     assert record["g1"] == round(lookup.g1 / threshold) and record["g2"] == round(lookup.g2 / threshold)
 
 
@@ -133,20 +133,19 @@ def test_no_segment_contains_a_kink(name):
     lookup, fraction = Lookup(DAMPERS[name]), np.linspace(0, 1, 21)
     table, finest = lookup.table, 1 << FMT.octave.frac_bits
     places = (table.first_octave + np.arange(SEGMENTS + 1) * 2**table.coarseness) / finest
-    lowest = 2.0 ** (1 - FMT.trial_octaves) * lookup.full
     for g in (lookup.g1, lookup.g2):
-        segment = int(np.searchsorted(places, octave(g / lowest), side="right")) - 1
+        segment = int(np.searchsorted(places, octave(g / lookup.full), side="right")) - 1
         assert 0 <= segment < SEGMENTS
-        start, end = lowest * octave_inverse(places[segment : segment + 2])
+        start, end = lookup.full * octave_inverse(places[segment : segment + 2])
         rho, sigma = middle_branch(lookup.material, start + fraction * (end - start))
         np.testing.assert_allclose(straight(table.words, "rho", -1, segment, fraction), rho, rtol=1e-4)
         creep = straight(table.words, "sigma", 1, segment, fraction) * 2.0 ** -lookup.record["creep_shift"]
-        np.testing.assert_allclose(creep * lookup.units.velocity / (4 * lookup.full), sigma, rtol=1e-4)
+        np.testing.assert_allclose(creep * lookup.units.velocity / (2 * lookup.full), sigma, rtol=1e-4)
 
 
 def test_octaves_are_exponent_and_mantissa():
-    x = np.array([1.0, 1.5, 2.0, 3.0, 4.0, 96.0])
-    assert octave(x).tolist() == [0.0, 0.5, 1.0, 1.5, 2.0, 6.5]
+    x = np.array([0.375, 1.0, 1.5, 2.0, 3.0, 4.0, 96.0])
+    assert octave(x).tolist() == [-1.5, 0.0, 0.5, 1.0, 1.5, 2.0, 6.5]
     assert octave_inverse(octave(x)).tolist() == x.tolist()
 
 
@@ -155,7 +154,7 @@ def test_octaves_are_exponent_and_mantissa():
 def test_the_finest_segments_that_cover_a_branch_are_taken(octaves, per_octave):
     table = damper_table(FMT, 2.0**-octaves, 1.0, rho=np.ones_like, sigma=np.ones_like)
     assert 2.0 ** (FMT.octave.frac_bits - table.coarseness) == per_octave
-    first, last = (octave(g * 2.0 ** (FMT.trial_octaves - 1)) for g in (2.0**-octaves, 1.0))
+    first, last = octave(2.0**-octaves), octave(1.0)
     start = table.first_octave * FMT.octave.lsb
     assert start <= first < start + 1 / per_octave and last < start + SEGMENTS / per_octave
 

@@ -146,7 +146,7 @@ def test_no_operation_starts_before_its_operands_are_there(name):
         if node.kind in WIRES:
             there[node] = there[node.operands[0]]
     for node, start in schedule.start.items():
-        assert schedule.cycle[node] == start + getattr(schedule.cost, node.kind)
+        assert schedule.cycle[node] == start + schedule.cost.of(node)
         assert all(there[operand] is None or there[operand] <= start for operand in node.operands), node.name
 
 

@@ -89,7 +89,7 @@ def test_material_coefficients_come_back():
         assert number("c") * full / units.velocity == pytest.approx(material.c1, rel=MANTISSA)
         assert number("rho_low") == pytest.approx(1 / (1 + material.c1 / material.c_max), rel=MANTISSA)
         assert number("rho_high") == pytest.approx(1 / (1 + material.c1 / material.c_min), rel=MANTISSA)
-        creep = 4 * full / units.velocity * 2.0 ** record["creep_shift"]
+        creep = 2 * full / units.velocity * 2.0 ** record["creep_shift"]
         assert number("sigma_low") == pytest.approx(creep / (material.c1 + material.c_max), rel=MANTISSA)
         assert number("sigma_high") == pytest.approx(creep / (material.c1 + material.c_min), rel=MANTISSA)
         for name in ("a_min", "a_max"):

@@ -132,6 +132,6 @@ def test_arrays_of_another_shape_are_refused(rng):
 
 
 def test_numbers_wider_than_an_integer_of_the_machine_are_refused(monkeypatch):
-    monkeypatch.setattr("sim.native_source.WIDEST", 54)
-    with pytest.raises(ValueError, match=r"^value_add2 must have at most 54 bits, not 55: take shorter state words$"):
+    monkeypatch.setattr("sim.native_source.WIDEST", 52)
+    with pytest.raises(ValueError, match=r"^value_add3 must have at most 52 bits, not 53: take shorter state words$"):
         sources(Formats())
