@@ -10,15 +10,16 @@ from amaranth.lib.wiring import In
 PLACEHOLDER = "name_of_the_module"
 
 
-def netlist(component: wiring.Component, name: str) -> str:
+def netlist(component: wiring.Component, name: str, platform=None) -> str:
     """RTLIL of ``component`` as the module ``name``, and of what it is made of as modules ``<name>_<kind>``.
 
     A component with an attribute ``module`` is an instance of a module of that name, which is made elsewhere; one with
     an attribute ``kind`` is called so, any other after its class. Elaborates the component; the wires of its
-    submodules' ports are renamed after submodule and port.
+    submodules' ports are renamed after submodule and port. The components may ask ``platform`` for modules of its own
+    (`hw.families`).
     """
     kinds = _Kinds(name)
-    kinds.add(Fragment.get(component, None), component, name)
+    kinds.add(Fragment.get(component, platform), component, name)
     return "\n".join(text.replace(PLACEHOLDER, kind) for kind, text in kinds.modules.items())
 
 

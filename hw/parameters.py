@@ -6,6 +6,7 @@ from golden import records
 from golden.formats import Formats
 
 from .cost import Cost
+from .families import FAMILIES
 
 EDGE, NODE = records.edge_entry(), records.node_entry()
 
@@ -22,12 +23,16 @@ class Parameters:
         Capacity. Each lane holds ``edges / lanes`` edges, rounded up.
     formats : Formats
     cost : Cost
+    family : str
+        Of devices, a name in `hw.families.FAMILIES`: which hard blocks the circuit is made of. It computes the same in
+        the same cycles with any.
 
     Raises
     ------
     ValueError
-        If one of them is out of range: `golden.records` says how large a node's number may be, and so on; or if a
-        state word, in which the host writes everything, is shorter than the longest of those records.
+        If one of them is out of range: `golden.records` says how large a node's number may be, and so on; if a state
+        word, in which the host writes everything, is shorter than the longest of those records; or if the family is
+        unknown.
     """
 
     lanes: int = 4
@@ -37,6 +42,7 @@ class Parameters:
     tables: int = 4
     formats: Formats = field(default_factory=Formats)
     cost: Cost = field(default_factory=Cost)
+    family: str = "generic"
 
     RANGES = {  # noqa: RUF012 (a constant)
         "lanes": (1, NODE["mask"].width // 2),
@@ -51,6 +57,8 @@ class Parameters:
             value = getattr(self, name)
             if not isinstance(value, int) or not low <= value <= high:
                 raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
+        if self.family not in FAMILIES:
+            raise ValueError(f"family must be {' or '.join(FAMILIES)}, not {self.family!r}")
         longest = max(records.width(record) for record in (EDGE, NODE))
         if self.formats.state < longest:
             raise ValueError(f"state must be at least {longest} bits, as a list's entry has, not {self.formats.state}")

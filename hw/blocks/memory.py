@@ -49,6 +49,9 @@ class BlockRam(_Ram):
     A word appears `READ_LATENCY` cycles after its address, one a cycle. A word that is read in the cycle in which it
     is written is undefined on real devices (here it is the old one); a later read finds it.
 
+    Its contents, ``init``, are words to start with, or 0. A family that has block RAMs to offer makes its own module
+    of it (``get_block_ram`` of Amaranth's ``platform``).
+
     Members
     -------
     write : In(1), write_address : In, write_data : In
@@ -61,11 +64,12 @@ class BlockRam(_Ram):
     """
 
     def __init__(self, *, width: int, depth: int, init=()):
-        self._init = init
+        self.init = init
         super().__init__("rom" if init else "block_ram", width, depth)
 
     def elaborate(self, platform):
-        return self._elaborate("sync", self._init)
+        block = platform.get_block_ram(self) if hasattr(platform, "get_block_ram") else None
+        return block or self._elaborate("sync", self.init)
 
 
 class LutRam(_Ram):

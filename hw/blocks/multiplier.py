@@ -15,7 +15,8 @@ class Multiplier(wiring.Component):
     is legal and takes more multipliers.
 
     Tools map a product of equal signedness to one block. A full-width unsigned operand ``u`` beside a signed one is
-    therefore taken as ``u - 2**17``, which is signed and 18 bits wide, and corrected by one addition.
+    therefore taken as ``u - 2**17``, which is signed and 18 bits wide, and corrected by one addition. A family that
+    has a multiplier to offer makes its own module of it (``get_multiplier`` of Amaranth's ``platform``).
 
     Parameters
     ----------
@@ -45,6 +46,10 @@ class Multiplier(wiring.Component):
         super().__init__({"a": In(a), "b": In(b), "product": Out(product)})
 
     def elaborate(self, platform):
+        block = platform.get_multiplier(self) if hasattr(platform, "get_multiplier") else None
+        return block or self._generic()
+
+    def _generic(self):
         m = Module()
         a, b = (self.a, self.b) if self.a.shape().signed else (self.b, self.a)
         wide = len(b) >= WIDTH and a.shape().signed and not b.shape().signed

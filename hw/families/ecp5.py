@@ -1,0 +1,123 @@
+"""Lattice ECP5: multipliers and block RAMs with their own registers, which no tool puts there by itself.
+
+``ecp5.v``, beside this file, has behavioural models of what is used here.
+"""
+
+from amaranth.hdl import Cat, ClockSignal, Const, Instance, Module, Signal, Value
+
+WIDTH = 18
+"""Bits of a multiplier's operand."""
+
+BLOCKS = ((36, 512), (18, 1024), (9, 2048), (4, 4096), (2, 8192), (1, 16384))
+"""(bits, words) of a block RAM, the widest first."""
+
+ADDRESS_BITS = 14
+"""A block RAM's address is that of a bit: a wider word leaves the lowest ones unused."""
+
+LOW, HIGH = Const(0, 1), Const(1, 1)
+
+
+class Ecp5:
+    """Modules with primitives for the blocks of `hw.blocks`, asked for by their ``elaborate``.
+
+    Each method returns None where the family has nothing better than the generic module.
+    """
+
+    def get_multiplier(self, multiplier) -> Module | None:
+        """A MULT18X18D: registers at its inputs and its output, a third one between."""
+        operands = multiplier.a, multiplier.b
+        if multiplier.registers > 3 or max(map(len, operands)) > WIDTH:
+            return None
+        m = Module()
+        stages = ["INPUTA", "INPUTB", "OUTPUT"] + ["PIPELINE"] * (multiplier.registers - 2)
+        clocks = {f"p_REG_{stage}_CLK": "CLK0" for stage in stages}
+        ports = {"i_CLK0": ClockSignal(), "i_CE0": HIGH, "i_RST0": LOW, **_inputs("C", [], WIDTH)}
+        for name, operand in zip("AB", operands, strict=True):
+            signed = operand.shape().signed
+            ports |= {f"i_SIGNED{name}": HIGH if signed else LOW, f"i_SOURCE{name}": LOW}
+            ports |= _inputs(name, operand, WIDTH, beyond=operand[-1] if signed else LOW)
+        product = _word("product", len(multiplier.product))
+        m.d.comb += multiplier.product.eq(Cat(product))
+        m.submodules.block = Instance("MULT18X18D", p_GSR="DISABLED", **clocks, **ports, **_outputs("P", product))
+        return m
+
+    def get_block_ram(self, ram) -> Module | None:
+        """As few block RAMs as hold it side by side, with their output registers: each has some bits of every word, so
+        that nothing has to choose between them afterwards."""
+        fitting = [bits for bits, words in BLOCKS if words >= ram.depth]
+        if not fitting:
+            return None
+        m, bits = Module(), fitting[0]
+        block = _wide if bits == 36 else _dual_port
+        read = _word("data", len(ram.data))
+        for low in range(0, len(read), bits):
+            part = slice(low, low + bits)
+            contents = [value >> low & (1 << bits) - 1 for value in ram.init]
+            parameters = {"p_GSR": "DISABLED"} | _initial(contents, bits)
+            m.submodules[f"block_{low}"] = block(ram, bits, ram.write_data[part], read[part], parameters)
+        m.d.comb += ram.data.eq(Cat(read))
+        return m
+
+
+def _wide(ram, bits, data, read, parameters) -> Instance:
+    """One port to write, one to read, both of 36 bits. The two halves of what is read are swapped."""
+    return Instance(
+        "PDPW16KD",
+        p_DATA_WIDTH_W=bits, p_DATA_WIDTH_R=bits, p_REGMODE="OUTREG", **parameters,
+        i_CLKW=ClockSignal(), i_CEW=ram.write, **_inputs("CSW", [], 3), **_inputs("BE", [HIGH] * 4, 4),
+        **_inputs("ADW", ram.write_address, 9), **_inputs("DI", data, 36),
+        i_CLKR=ClockSignal(), i_CER=HIGH, i_OCER=HIGH, i_RST=LOW, **_inputs("CSR", [], 3),
+        **_inputs("ADR", _address(ram.address, bits), ADDRESS_BITS),
+        **_outputs("DO", read[18:]), **_outputs("DO", read[:18], first=18),
+    )  # fmt: skip
+
+
+def _dual_port(ram, bits, data, read, parameters) -> Instance:
+    """Two ports of at most 18 bits: A writes, B reads."""
+    return Instance(
+        "DP16KD",
+        p_DATA_WIDTH_A=bits, p_DATA_WIDTH_B=bits, p_REGMODE_B="OUTREG", **parameters,
+        i_CLKA=ClockSignal(), i_CEA=HIGH, i_OCEA=HIGH, i_WEA=ram.write, i_RSTA=LOW, **_inputs("CSA", [], 3),
+        **_inputs("ADA", _address(ram.write_address, bits, enables=bits // 18 * 2), ADDRESS_BITS),
+        **_inputs("DIA", data, 18),
+        i_CLKB=ClockSignal(), i_CEB=HIGH, i_OCEB=HIGH, i_WEB=LOW, i_RSTB=LOW, **_inputs("CSB", [], 3),
+        **_inputs("ADB", _address(ram.address, bits), ADDRESS_BITS), **_inputs("DIB", [], 18),
+        **_outputs("DOB", read),
+    )  # fmt: skip
+
+
+def _address(address, bits: int, enables=0) -> list[Value]:
+    """Of a word's first bit, the ninth bits of bytes not counted. A wide word doesn't need the lowest bits, which are
+    its bytes' ``enables`` instead."""
+    unused = (bits - bits // 9).bit_length() - 1
+    return [HIGH] * enables + [LOW] * (unused - enables) + list(address)
+
+
+def _inputs(name: str, bits, count: int, beyond=LOW) -> dict[str, Value]:
+    """Pins ``name0``, ``name1`` ... with ``bits``, those that are left with ``beyond``."""
+    return {f"i_{name}{n}": bits[n] if n < len(bits) else beyond for n in range(count)}
+
+
+def _outputs(name: str, bits, first=0) -> dict[str, Value]:
+    return {f"o_{name}{first + n}": bit for n, bit in enumerate(bits)}
+
+
+def _word(name: str, count: int) -> list[Signal]:
+    """A wire of its own for each pin."""
+    return [Signal(name=f"{name}_{n}") for n in range(count)]
+
+
+def _initial(contents: list[int], bits: int) -> dict[str, str]:
+    """A block RAM's first contents as its parameters want them, nothing if they are 0.
+
+    A block holds bytes of nine bits. A word narrower than that is in the lower eight, a wider one in several. Each
+    parameter has 16 pairs of bytes, two bits left out behind each pair.
+    """
+    in_a_byte, stride = max(1, 8 // bits), max(bits, 9)
+    flat = 0
+    for number, word in enumerate(contents):
+        flat |= word << number // in_a_byte * stride + number % in_a_byte * bits
+    pairs = [flat >> 18 * n & (1 << 18) - 1 for n in range(1024)] if flat else []
+    rows = [pairs[low : low + 16] for low in range(0, len(pairs), 16)]
+    values = [sum(pair << 20 * n for n, pair in enumerate(row)) for row in rows]
+    return {f"p_INITVAL_{n:02X}": f"0x{value:080X}" for n, value in enumerate(values)}
