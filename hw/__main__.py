@@ -10,6 +10,7 @@ from golden.command import Parser, execute
 from golden.errors import InputError
 from golden.formats import Formats
 
+from .families import FAMILIES
 from .parameters import Parameters
 
 ROOT = Path(__file__).parents[1]
@@ -43,6 +44,12 @@ def parser() -> Parser:
                 metavar={"lanes": "P", "operand": "BITS", "state": "BITS"}.get(option, option[0].upper()),
                 help=f"{meaning} ({defaults[option]})",
             )
+        command.add_argument(
+            "--family",
+            default=defaults["family"],
+            metavar="NAME",
+            help=f"devices whose hard blocks it takes, {' or '.join(FAMILIES)} ({defaults['family']})",
+        )
         command.add_argument("--out", default="build/verilog", metavar="DIR", help="folder to write to (build/verilog)")
         command.add_argument("--force", action="store_true", help="replace another tool's files of the same names")
         command.set_defaults(run=run)
@@ -61,7 +68,8 @@ def parameters(args) -> Parameters:
     """What the options say. Raises `InputError` naming the option for a circuit that can't be."""
     try:
         formats = Formats(**{name: getattr(args, name) for name in FORMATS})
-        return Parameters(**{name: getattr(args, name) for name in CAPACITIES}, formats=formats)
+        capacities = {name: getattr(args, name) for name in CAPACITIES}
+        return Parameters(**capacities, formats=formats, family=args.family)
     except ValueError as error:
         raise InputError(f"--{error}") from None
 
@@ -83,7 +91,7 @@ def lint(args) -> int:
     from .verilog import TOP
 
     verilog(args)
-    found = warnings(Path(args.out) / build.VERILOG, top=TOP)
+    found = warnings(Path(args.out) / build.VERILOG, top=TOP, family=args.family)
     for line in found:
         print(line, file=sys.stderr)
     print(f"{len(found)} warnings beyond those that {WAIVERS.relative_to(ROOT)} excuses")

@@ -10,6 +10,7 @@ from golden.errors import InputError
 from golden.files import write_text
 
 from . import manifest
+from .families import FAMILIES
 from .parameters import Parameters
 from .verilog import emit
 
@@ -51,7 +52,8 @@ def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
 def describe(p: Parameters) -> str:
     counts = {name: getattr(p, name) for name in p.RANGES}
     words = [f"{count} {name if count > 1 else name.removesuffix('s')}" for name, count in counts.items()]
-    return ", ".join([*words, f"{p.formats.operand}-bit operands", f"{p.formats.state}-bit states"])
+    words += [f"{p.formats.operand}-bit operands", f"{p.formats.state}-bit states"]
+    return ", ".join(words) + (f", for {p.family}" if FAMILIES[p.family] else "")
 
 
 def key_of(parameters: Parameters) -> str:

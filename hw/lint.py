@@ -6,11 +6,16 @@ from pathlib import Path
 
 from golden.errors import InputError
 
+from .families import MODELS
+
 WAIVERS = Path(__file__).with_name("waivers.vlt")
 
 
-def lint(verilog: Path, *, top: str, waivers: Path | None = WAIVERS) -> list[str]:
+def lint(verilog: Path, *, top: str, waivers: Path | None = WAIVERS, family: str = "generic") -> list[str]:
     """The warnings of ``verilator --lint-only -Wall`` on a file that ``waivers`` doesn't excuse, a line each.
+
+    The models of a family's primitives, `hw.families.MODELS`, are judged with it; what is to be excused of them is in a
+    file beside.
 
     Raises
     ------
@@ -21,7 +26,9 @@ def lint(verilog: Path, *, top: str, waivers: Path | None = WAIVERS) -> list[str
     if package is None:
         raise InputError("verilator must be installed (make sets up .venv with it), but is not")
     program = Path(package.origin).parent / "bin" / "verilator"
-    files = [str(path.resolve()) for path in (waivers, verilog) if path]
+    models = MODELS.get(family)
+    excused = [waivers, models and models.with_suffix(".vlt")] if waivers else []
+    files = [str(path.resolve()) for path in (*excused, models, verilog) if path]
     command = [str(program), "--lint-only", "-Wall", "--quiet", *files, "--top-module", top]
     done = subprocess.run(command, capture_output=True, text=True)
     said = [line for line in done.stderr.splitlines() if line.startswith("%")]

@@ -77,6 +77,7 @@ def parameters(p: Parameters) -> dict:
         "tables": p.tables,
         "operand": p.formats.operand,
         "state": p.formats.state,
+        "family": p.family,
     }
 
 

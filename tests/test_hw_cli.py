@@ -14,6 +14,7 @@ from hw import build, lint, manifest
 from hw.__main__ import main
 from hw.build import MANIFEST, VERILOG
 from hw.parameters import Parameters
+from hw.verilog import TOP
 
 ROOT = Path(__file__).resolve().parents[1]
 SMALL = ["--lanes", "2", "--nodes", "16", "--edges", "20", "--materials", "3", "--tables", "1"]
@@ -74,6 +75,14 @@ def test_options_reach_the_circuit(emitted, out):
     assert (chosen.formats.operand, chosen.formats.state) == (20, 40)
 
 
+def test_the_family_is_said_everywhere(emitted, out, capsys):
+    assert run(out, "--family", "ecp5") == 0
+    assert emitted[0].family == "ecp5"
+    assert json.loads((out / MANIFEST).read_text())["parameters"]["family"] == "ecp5"
+    assert "-bit states, for ecp5. Written by" in (out / VERILOG).read_text()
+    assert said(capsys)[0][-1].endswith("36-bit states, for ecp5")
+
+
 def test_nothing_is_written_again_while_nothing_has_changed(emitted, out, capsys):
     run(out)
     before = {path: path.stat().st_mtime_ns for path in out.iterdir()}
@@ -104,10 +113,10 @@ def test_what_was_disturbed_is_written_again(disturb, emitted, out):
 
 def test_other_parameters_are_another_circuit(emitted, out):
     keys = set()
-    for options in ([], ["--lanes", "1"], ["--tables", "2"], ["--state", "38"]):
+    for options in ([], ["--lanes", "1"], ["--tables", "2"], ["--state", "38"], ["--family", "ecp5"]):
         assert run(out, *options) == 0
         keys.add(json.loads((out / MANIFEST).read_text())["key"])
-    assert len(keys) == len(emitted) == 4
+    assert len(keys) == len(emitted) == 5
 
 
 def test_other_versions_of_the_tools_write_again(emitted, out, monkeypatch):
@@ -210,6 +219,7 @@ IMPOSSIBLE = {
     "--state 45": "--state must be 24 to 44 bits, not 45",
     "--operand 20": "--operand must be at most 18 bits, half of a state word, not 20",
     "--operand 12 --state 32": "--state must be at least 33 bits, as a list's entry has, not 32",
+    "--family ice40": "--family must be generic or ecp5, not 'ice40'",
     "--lanes two": f"argument --lanes: must be a whole number, not 'two' {HELP}",
     "--lanes 1.5": f"argument --lanes: must be a whole number, not '1.5' {HELP}",
     "--lanes": f"argument --lanes: expected one argument {HELP}",
@@ -244,8 +254,13 @@ def test_an_interruption_is_said(monkeypatch, capsys, out):
 
 def test_lint_judges_what_it_writes(emitted, out, monkeypatch, capsys):
     warnings = []
-    monkeypatch.setattr(lint, "lint", lambda path, top: warnings if path == out / VERILOG else pytest.fail(top))
-    arguments = ["lint", *SMALL, "--out", str(out)]
+
+    def judge(path, top, family):
+        assert (path, top, family) == (out / VERILOG, TOP, "ecp5")
+        return warnings
+
+    monkeypatch.setattr(lint, "lint", judge)
+    arguments = ["lint", *SMALL, "--family", "ecp5", "--out", str(out)]
     assert main(arguments) == 0
     assert said(capsys) == ([f"{out / VERILOG}: {build.describe(emitted[0])}",
                              "0 warnings beyond those that hw/waivers.vlt excuses"], [])

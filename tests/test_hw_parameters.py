@@ -36,6 +36,11 @@ def test_each_end_of_a_range_is_legal_and_nothing_beyond(name):
                 f"{name} must be a whole number from {low} to {high}, not {value!r}")
 
 
+@pytest.mark.parametrize("family", ["x", "ECP5", "", None])
+def test_a_family_that_nobody_knows(family):
+    refused(lambda: Parameters(family=family), f"family must be generic or ecp5, not {family!r}")
+
+
 def test_a_list_entry_fits_a_state_word():
     Parameters(formats=Formats(16, 33))
     refused(lambda: Parameters(formats=Formats(16, 32)),

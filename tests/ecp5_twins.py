@@ -1,0 +1,76 @@
+"""The generic blocks and their twins of ECP5 primitives, simulated together by Verilator."""
+
+import ctypes
+from pathlib import Path
+
+import numpy as np
+from amaranth.hdl import Cat, Module
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from hw.families import FAMILIES, MODELS
+from hw.verilog import convert
+from sim.verilated import library, opened
+
+SHIM = Path(__file__).with_name("twins.cpp")
+SLOT = 64
+"""Bits that the inputs of one block have, and its output."""
+
+
+class Blocks(wiring.Component):
+    """Blocks side by side: each has a slot of ``inputs``, its own ones behind one another, and one of ``outputs``."""
+
+    def __init__(self, blocks):
+        self._blocks = blocks
+        super().__init__({"inputs": In(SLOT * len(blocks)), "outputs": Out(SLOT * len(blocks))})
+
+    def elaborate(self, platform):
+        m = Module()
+        for number, block in enumerate(self._blocks):
+            m.submodules[f"block_{number}"] = block
+            ports = block.signature.members
+            inputs = Cat(getattr(block, name) for name, member in ports.items() if member.flow == In)
+            (output,) = (getattr(block, name) for name, member in ports.items() if member.flow == Out)
+            assert max(len(inputs), len(output)) <= SLOT
+            m.d.comb += inputs.eq(self.inputs.word_select(number, SLOT))
+            m.d.comb += self.outputs.word_select(number, SLOT).eq(output.as_unsigned())
+        return m
+
+
+TOP = """module twins(input clk, input [{last}:0] in, output [{last}:0] generic, ecp5);
+  blocks_generic one(.clk(clk), .rst(1'b0), .inputs(in), .outputs(generic));
+  blocks_ecp5 other(.clk(clk), .rst(1'b0), .inputs(in), .outputs(ecp5));
+endmodule
+"""
+
+
+def run(blocks, inputs: list[dict[str, np.ndarray]], folder: Path) -> list[tuple[np.ndarray, np.ndarray]]:
+    """(what each block, what its twin put out) in every cycle, before the clock rises, as bits.
+
+    Parameters
+    ----------
+    blocks : list of components
+        With one output each.
+    inputs : list of dict of str to array
+        Of each block, in every cycle.
+    folder : Path
+        To build in.
+    """
+    texts = [convert(Blocks(blocks), f"blocks_{family}", FAMILIES[family]) for family in ("generic", "ecp5")]
+    text = "\n".join([TOP.format(last=SLOT * len(inputs) - 1), *texts, MODELS["ecp5"].read_text()])
+    twins = opened(library("twins", text, SHIM, folder=folder, parts={})).twins
+    stimulus = np.stack([_slot(block, values) for block, values in zip(blocks, inputs, strict=True)], axis=1)
+    outputs = np.zeros((2, *stimulus.shape), np.uint64)
+    pointers = [ctypes.c_void_p(array.ctypes.data) for array in (stimulus, *outputs)]
+    twins(*pointers, ctypes.c_long(len(stimulus)))
+    return list(zip(*outputs.swapaxes(1, 2), strict=True))
+
+
+def _slot(block, values) -> np.ndarray:
+    word, low = np.uint64(0), 0
+    for name, member in block.signature.members.items():
+        if member.flow == In:
+            bits = len(getattr(block, name))
+            word = word | (values[name].astype(np.uint64) & np.uint64((1 << bits) - 1)) << np.uint64(low)
+            low += bits
+    return word
