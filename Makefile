@@ -6,6 +6,7 @@ LANES ?= 2
 # This make's flags must not reach the makes that Verilator and cocotb start.
 run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
 lanes := --lanes $(LANES)
+family := $(if $(FAMILY),--family $(FAMILY))
 # The tests of a file go to one worker: what they share is built once.
 pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
 capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
@@ -19,8 +20,8 @@ compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on flo
 	@$(run) -m sim compare scenes/*.toml $(lanes) --out build/report
 	@echo "report: build/report/index.html, figures: build/report/compare.json"
 
-verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size
-	@$(run) -m hw verilog $(lanes) $(capacities) --out build/verilog
+verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks
+	@$(run) -m hw verilog $(lanes) $(capacities) $(family) --out build/verilog
 
 test: environment ## run the tests
 	@$(pytest) -m "not campaign"
