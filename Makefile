@@ -14,7 +14,7 @@ capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
 
 .DEFAULT_GOAL := compare
 .NOTPARALLEL:
-.PHONY: compare verilog test verify lint lock help clean distclean environment
+.PHONY: compare verilog bench test verify lint lock help clean distclean environment
 
 compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on float64, integers and simulated circuit
 	@$(run) -m sim compare scenes/*.toml $(lanes) --out build/report
@@ -22,6 +22,9 @@ compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on flo
 
 verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks
 	@$(run) -m hw verilog $(lanes) $(capacities) $(family) --out build/verilog
+
+bench: environment ## time the circuit's step and that of software on this machine: keep the machine idle meanwhile
+	@$(run) -m sim bench --out build/bench.json
 
 test: environment ## run the tests
 	@$(pytest) -m "not campaign"

@@ -1,10 +1,11 @@
-"""The command line: ``python -m sim run SCENE ...`` and ``python -m sim compare SCENE ...``."""
+"""The command line: ``python -m sim run SCENE ...``, ``python -m sim compare SCENE ...``, ``python -m sim bench``."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from functools import partial
+from math import inf, nan
 from pathlib import Path
 
 from golden import scene as scenes
@@ -17,13 +18,13 @@ from sim.run import BACKENDS, LANES
 
 def parser() -> Parser:
     main = Parser(prog="python -m sim", description="Run scenes on float64, on integers and on the simulated circuit.")
-    commands = main.add_subparsers(dest="command", required=True, metavar="run|compare")
+    commands = main.add_subparsers(dest="command", required=True, metavar="run|compare|bench")
 
     one = commands.add_parser("run", help="run one scene on one backend")
     one.add_argument("scene", metavar="SCENE", help="a scene file (TOML)")
     one.add_argument("--backend", required=True, choices=BACKENDS,
                      help="float64, the circuit's integer model, or its Verilog under Verilator")
-    one.add_argument("--lanes", type=lanes, metavar="P", help=f"edge processors of the circuit (rtl; {LANES})")
+    one.add_argument("--lanes", type=whole, metavar="P", help=f"edge processors of the circuit (rtl; {LANES})")
     one.add_argument("--waves", nargs="?", const="vcd", choices=waves.FORMATS, metavar="vcd|fst",
                      help="write the waveforms of the circuit's first 5000 busy cycles as well "
                           "(rtl; vcd, which is larger but needs no library)")
@@ -32,21 +33,39 @@ def parser() -> Parser:
 
     many = commands.add_parser("compare", help="run scenes on all backends side by side and report the differences")
     many.add_argument("scenes", nargs="+", metavar="SCENE", help="scene files (TOML)")
-    many.add_argument("--lanes", type=lanes, default=LANES, metavar="P",
+    many.add_argument("--lanes", type=whole, default=LANES, metavar="P",
                       help=f"edge processors of the circuit ({LANES})")
     many.add_argument("--out", default="build/report", metavar="DIR",
                       help="folder for compare.json and index.html (build/report)")
     many.set_defaults(run=compare)
+
+    speed = commands.add_parser("bench", help="time the circuit's step and that of software on this machine")
+    speed.add_argument("--meshes", nargs="+", metavar="MESH", help="nodes along each axis, as 9x9 or 5x5x5")
+    speed.add_argument("--steps", type=whole, default=10_000, metavar="N", help="steps of the software to time (10000)")
+    speed.add_argument("--clock", type=megahertz, metavar="MHZ", help="the circuit's clock (125)")
+    speed.add_argument("--out", default="build/bench.json", metavar="FILE",
+                       help="file for the figures (build/bench.json)")
+    speed.set_defaults(run=bench)
 
     for command in (one, many):
         command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
     return main
 
 
-def lanes(text: str) -> int:
+def whole(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, not {text!r}")
     return int(text)
+
+
+def megahertz(text: str) -> float:
+    try:
+        clock = float(text)
+    except ValueError:
+        clock = nan
+    if not 0 < clock < inf:
+        raise argparse.ArgumentTypeError(f"must be a finite number above 0, not {text!r}")
+    return clock
 
 
 def run(args) -> int:
@@ -93,6 +112,25 @@ def compare(args) -> int:
     for name, reason in wrong:
         print(f"error: {name}: {reason}", file=sys.stderr)
     return 1 if wrong else 0
+
+
+def bench(args) -> int:
+    from sim.speed import bench, circuit, table, timing  # Numba is slow to load
+    from sim.speed.meshes import MESHES
+
+    out = bench.claim(Path(args.out))
+    with table.progress() as shown:
+        def cycles(scene, lanes, updates):
+            shown(f"{scene.name}: circuit with {lanes} lane{'s' * (lanes > 1)}")
+            return circuit.cycles_per_step(scene, lanes, updates)
+
+        def software(scene):
+            return timing.software(scene, args.steps, lambda name: shown(f"{scene.name}: {timing.SOFTWARE[name]}"))
+
+        entries = bench.bench(args.meshes or MESHES, cycles, software, clock=args.clock or bench.CLOCK)
+    bench.save(entries, out)
+    table.print_tables(entries)
+    return 0
 
 
 def main(arguments=None) -> int:

@@ -160,8 +160,8 @@ HELP = "(see python -m sim run --help)"
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ([], "the following arguments are required: run|compare (see python -m sim --help)"),
-    (["walk"], "argument run|compare: invalid choice: 'walk' (choose from 'run', 'compare') "
+    ([], "the following arguments are required: run|compare|bench (see python -m sim --help)"),
+    (["walk"], "argument run|compare|bench: invalid choice: 'walk' (choose from 'run', 'compare', 'bench') "
      "(see python -m sim --help)"),
     (["run", "s.toml", "--out", "o"], f"the following arguments are required: --backend {HELP}"),
     (["run", "s.toml", "--backend", "fixed"], f"the following arguments are required: --out {HELP}"),

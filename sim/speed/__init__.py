@@ -1,0 +1,1 @@
+"""How fast: the circuit's step beside that of software on this machine."""

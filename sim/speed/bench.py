@@ -1,0 +1,80 @@
+"""What the benchmark finds out: an entry for every mesh and circuit, in build/bench.json."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from golden.errors import InputError
+from golden.files import write_text
+from golden.problem import Scene
+from sim.errors import about
+from sim.speed import meshes
+
+CIRCUITS = (1, 1), (2, 1), (4, 1)
+"""(lanes, updates): edge processors, and nodes updated in a cycle."""
+
+CLOCK = 125.0  # MHz: what the circuit is to reach on the slowest grade of an ECP5
+STAGES = 4  # of classical Runge-Kutta: every edge is evaluated in each
+
+
+def bench(names: Iterable[str], cycles_per_step: Callable[[Scene, int, int], int], software: Callable[[Scene], dict],
+          *, circuits: Iterable[tuple[int, int]] = CIRCUITS, clock: float = CLOCK) -> list[dict]:
+    """Entries of meshes, by their names as in `sim.speed.meshes`: every circuit for each.
+
+    Parameters
+    ----------
+    cycles_per_step
+        Clock cycles of a step of (scene, lanes, updates).
+    software
+        Step times of programs as `sim.speed.timing.software` gives them; called once for a mesh, after
+        ``cycles_per_step``, so that what that had to build is done.
+    clock
+        MHz.
+    """
+    entries = []
+    for name in names:
+        scene = meshes.scene(name)
+        with about(scene):
+            cycles = [cycles_per_step(scene, *circuit) for circuit in circuits]
+        times = software(scene)
+        entries += [entry(scene, *circuit, n, clock, times) for circuit, n in zip(circuits, cycles, strict=True)]
+    return entries
+
+
+def entry(scene: Scene, lanes: int, updates: int, cycles: int, clock: float, software: dict[str, dict]) -> dict:
+    """A mesh's object in bench.json for one circuit; a program's ``ratio`` is its step over the circuit's."""
+    evaluations, step = STAGES * len(scene.mesh.edges), cycles / clock
+    return {
+        "mesh": scene.name,
+        "lanes": lanes,
+        "updates": updates,
+        "nodes": len(scene.mesh.points),
+        "edges": len(scene.mesh.edges),
+        "clock_mhz": clock,
+        "cycles_per_step": cycles,
+        "occupancy": evaluations / (lanes * cycles),
+        "step_us": step,
+        "edge_evals_per_s": evaluations / step * 1e6,
+        "software": {name: {**times, "ratio": times["step_us"] / step} for name, times in software.items()},
+    }
+
+
+def claim(path: Path) -> Path:
+    """Make the folder of the file to write, before anything is timed for it. Raises `InputError` if it can't be."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        reason = os.strerror(errno.EISDIR) if path.is_dir() else None
+    except OSError as error:
+        reason = error.strerror
+    if reason:
+        raise InputError(f"--out must be a file that can be written, not {path}: {reason}")
+    return path
+
+
+def save(entries: list[dict], path: Path) -> None:
+    """Write the entries, all or none."""
+    write_text(path, json.dumps(entries, indent=1, allow_nan=False) + "\n")

@@ -1,0 +1,72 @@
+"""The compiled float model: `golden.model.Model` with linear dampers, as fast as Numba makes it."""
+
+from __future__ import annotations
+
+from threading import Thread
+
+import numpy as np
+
+from golden.errors import InputError
+from golden.problem import Phase, Scene
+from sim.speed import arrays
+from sim.speed.kernel import run
+
+
+class CompiledModel:
+    """An object in motion, as `golden.model.Model`: it starts at rest, under the scene's first phase.
+
+    Parameters
+    ----------
+    dtype
+        Type of all its numbers.
+    threads
+        How many work on a step; each of them keeps a core busy.
+
+    Raises
+    ------
+    InputError
+        If a damper depends on the force, or there are not as many threads as 1.
+    """
+
+    def __init__(self, scene: Scene, dtype=np.float32, threads: int = 1):
+        if type(threads) is not int or threads < 1:
+            raise InputError(f"threads must be a whole number of at least 1, not {threads!r}")
+        self._scene, self._threads = scene, threads
+        self._arrays = arrays.arrays(scene, dtype)
+        self._shares = arrays.shares(self._arrays, threads)
+        self.begin(scene.phases[0])
+
+    def begin(self, phase: Phase) -> None:
+        """Put the object under a phase's constraints and loads."""
+        arrays.begin(self._arrays, self._scene, phase)
+
+    def step(self, steps: int = 1) -> np.ndarray:
+        """Run so many steps and give the time that each of them took (steps,), in ns."""
+        counter, stamps = np.zeros(1, np.int64), np.zeros((steps + 1, 2), np.int64)
+
+        def part(thread):
+            run(self._arrays, *self._shares, thread, self._threads, counter, steps, stamps)
+
+        # daemons: when an interrupt ends the program, they may be waiting for this thread
+        others = [Thread(target=part, args=(thread,), daemon=True) for thread in range(1, self._threads)]
+        for other in others:
+            other.start()
+        part(0)
+        for other in others:
+            other.join()
+        return np.diff(stamps @ [10**9, 1])
+
+    @property
+    def x(self) -> np.ndarray:
+        """(N, dim) m."""
+        return self._arrays.node[: self._scene.dim].T
+
+    @property
+    def v(self) -> np.ndarray:
+        """(N, dim) m/s."""
+        return self._arrays.node[self._scene.dim :].T
+
+    @property
+    def a(self) -> np.ndarray:
+        """(E,)"""
+        return self._arrays.edge[arrays.RATIO]

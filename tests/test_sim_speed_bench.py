@@ -1,0 +1,142 @@
+"""python -m sim bench: what it writes and shows, what it refuses, and where the circuit's cycles come from."""
+import json
+import sys
+
+import pytest
+
+from golden.errors import InputError, InternalError
+from sim import rtl
+from sim.__main__ import main
+from sim.speed import bench, circuit, meshes, table, timing
+
+KEYS = ["mesh", "lanes", "updates", "nodes", "edges", "clock_mhz", "cycles_per_step", "occupancy", "step_us",
+        "edge_evals_per_s", "software"]
+
+
+def software(scene, steps, progress):
+    """Stands in for `sim.speed.timing.software`."""
+    times = {"threads": 2, "steps": steps, "step_us": 20.0, "p999_us": 30.0, "max_us": 4000.0, "clock_us": 0.02}
+    for name in timing.SOFTWARE:
+        progress(name)
+    return dict.fromkeys(timing.SOFTWARE, times)
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """No circuit is built and nothing is timed."""
+    monkeypatch.setattr(timing, "software", software)
+    monkeypatch.setattr(circuit, "cycles_per_step",
+                        lambda scene, lanes, updates: 4 * len(scene.mesh.edges) // lanes + 250)
+
+
+def test_entry():
+    scene = meshes.scene("9x9")
+    entry = bench.entry(scene, 4, 1, 500, 100.0, software(scene, 10, print))
+    assert list(entry) == KEYS
+    assert entry["step_us"] == 5.0 and entry["occupancy"] == 4 * 208 / (4 * 500)
+    assert entry["edge_evals_per_s"] == pytest.approx(4 * 208 / 5e-6)
+    assert {name: program["ratio"] for name, program in entry["software"].items()} == dict.fromkeys(timing.SOFTWARE, 4)
+
+
+def test_writes_entries_and_shows_two_tables(quick, tmp_path, capsys):
+    out = tmp_path / "a" / "bench.json"
+    assert main(["bench", "--meshes", "9x9", "5x5x5", "--steps", "7", "--clock", "100", "--out", str(out)]) == 0
+    entries = json.loads(out.read_text())
+    assert [(e["mesh"], e["lanes"], e["updates"]) for e in entries] == [
+        (mesh, *circuit) for mesh in ("9x9", "5x5x5") for circuit in bench.CIRCUITS]
+    assert all(list(e) == KEYS for e in entries)
+    assert [p.name for p in out.parent.iterdir()] == ["bench.json"]
+    said, err = capsys.readouterr()
+    assert err == ""
+    lines = said.splitlines()
+    assert max(map(len, lines)) <= 120
+    assert lines[5].split() == ["9x9", "81", "208", "1", "1", "1082", "0.769", "10.82", "76.9", *["20.0", "1.85"] * 3]
+    assert ["5x5x5", *["20.0", "30.0", "4000.0"] * 3] in [line.split() for line in lines]
+    assert "steps: 7," in said
+
+
+def test_all_meshes_fit_on_a_screen(quick, tmp_path, capsys):
+    assert main(["bench", "--out", str(tmp_path / "bench.json")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) < 40 and max(map(len, lines)) <= 120
+    assert list(dict.fromkeys(line.split()[0] for line in lines[5:23])) == list(meshes.MESHES)
+
+
+def test_progress_on_a_terminal(quick, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    assert main(["bench", "--meshes", "3x3", "--out", str(tmp_path / "bench.json")]) == 0
+    shown = capsys.readouterr().err.split("\r\x1b[K")
+    assert shown == ["", "3x3: circuit with 1 lane ...", "3x3: circuit with 2 lanes ...",
+                     "3x3: circuit with 4 lanes ...", *(f"3x3: {name} ..." for name in timing.SOFTWARE.values()), ""]
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["--steps", "0"], "argument --steps: must be a whole number of at least 1, not '0' "
+                       "(see python -m sim bench --help)"),
+    (["--clock", "0"], "argument --clock: must be a finite number above 0, not '0' (see python -m sim bench --help)"),
+    (["--clock", "fast"], "argument --clock: must be a finite number above 0, not 'fast' "
+                          "(see python -m sim bench --help)"),
+    (["--meshes", "9"], "meshes must be numbers of nodes like 9x9 or 5x5x5, not '9'"),
+    (["--meshes", "1x9"], "nodes must be 2 whole numbers of at least 2, not [1, 9]"),
+])
+def test_refusals(quick, arguments, message, tmp_path, capsys):
+    assert main(["bench", *arguments, "--out", str(tmp_path / "bench.json")]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err == f"error: {message}\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("out, reason", [("folder", "Is a directory"), ("file/bench.json", "Not a directory")])
+def test_out_is_refused_before_anything_is_timed(quick, out, reason, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(circuit, "cycles_per_step", lambda *circuit: pytest.fail("nothing may be run"))
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").touch()
+    assert main(["bench", "--out", str(tmp_path / out)]) == 2
+    reasons = reason, "File exists"
+    assert capsys.readouterr().err in [
+        f"error: --out must be a file that can be written, not {tmp_path / out}: {reason}\n" for reason in reasons]
+
+
+def machine(cycles_of_a_run):
+    """Something in place of `sim.rtl.RtlMachine`."""
+    class Machine:
+        def __init__(self, image, *, parameters, folder):
+            self.cycles, self.lanes = 0, parameters.lanes
+
+        def step(self, steps):
+            self.cycles += cycles_of_a_run(steps)
+
+        def close(self):
+            closed.append(True)
+
+    closed = Machine.closed = []
+    return Machine
+
+
+def test_cycles_of_a_step_are_those_of_each_more(monkeypatch):
+    stand_in = machine(lambda steps: 300 + 832 * steps)
+    monkeypatch.setattr(rtl, "RtlMachine", stand_in)
+    assert circuit.cycles_per_step(meshes.scene("9x9"), 1, 1) == 832
+    assert stand_in.closed
+
+
+@pytest.mark.parametrize("cycles, took", [
+    (lambda steps: steps**2, "1, 121 and 441"),
+    (lambda steps: 832 * steps + steps // 11, "832, 9153 and 17473"),
+])
+def test_steps_of_different_cycles_are_noticed(cycles, took, monkeypatch):
+    monkeypatch.setattr(rtl, "RtlMachine", machine(cycles))
+    message = f"every step must take as many cycles, but 1, 11 and 21 steps took {took}"
+    with pytest.raises(InternalError, match=f"^{message}$"):
+        circuit.cycles_per_step(meshes.scene("9x9"), 1, 1)
+
+
+@pytest.mark.parametrize("lanes, updates, message", [
+    (1, 2, "updates must be 1, not 2"), (9, 1, "lanes must be a whole number from 1 to 8, not 9")])
+def test_circuits_that_do_not_exist(lanes, updates, message):
+    with pytest.raises(InputError, match=f"^{message}$"):
+        circuit.cycles_per_step(meshes.scene("9x9"), lanes, updates)
+
+
+def test_processor_has_a_name():
+    assert table.processor()
