@@ -2,6 +2,7 @@
 PYTHON ?= python3
 JOBS ?= 2
 LANES ?= 2
+BOARD ?= ulx3s-85f
 
 # This make's flags must not reach the makes that Verilator and cocotb start.
 run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
@@ -14,7 +15,7 @@ capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
 
 .DEFAULT_GOAL := compare
 .NOTPARALLEL:
-.PHONY: compare verilog bench test verify lint lock help clean distclean environment
+.PHONY: compare verilog timing bench test verify lint lock help clean distclean environment
 
 compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on float64, integers and simulated circuit
 	@$(run) -m sim compare scenes/*.toml $(lanes) --out build/report
@@ -22,6 +23,10 @@ compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on flo
 
 verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks
 	@$(run) -m hw verilog $(lanes) $(capacities) $(family) --out build/verilog
+
+timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3"
+	@$(run) -m hw timing --board $(BOARD) $(if $(filter-out file,$(origin LANES)),$(lanes)) $(capacities) \
+	    $(if $(SEEDS),--seeds $(SEEDS))
 
 bench: environment ## time the circuit's step and that of software on this machine: keep the machine idle meanwhile
 	@$(run) -m sim bench --out build/bench.json

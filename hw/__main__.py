@@ -1,4 +1,4 @@
-"""The command line: ``python -m hw verilog``, ``python -m hw lint``, ``python -m hw docs``."""
+"""The command line: ``python -m hw verilog``, and lint, timing, docs."""
 
 import argparse
 import re
@@ -12,6 +12,7 @@ from golden.formats import Formats
 
 from .families import FAMILIES
 from .parameters import Parameters
+from .timing import command as timing
 
 ROOT = Path(__file__).parents[1]
 FORMATS = {
@@ -29,7 +30,7 @@ CAPACITIES = {
 
 def parser() -> Parser:
     main = Parser(prog="python -m hw", description="The circuit's Verilog.")
-    commands = main.add_subparsers(dest="command", required=True, metavar="verilog|lint|docs")
+    commands = main.add_subparsers(dest="command", required=True, metavar="verilog|lint|timing|docs")
     defaults = {**vars(Parameters()), **vars(Formats())}
     for name, run, what in (
         ("verilog", verilog, "write the Verilog and its manifest"),
@@ -53,6 +54,7 @@ def parser() -> Parser:
         command.add_argument("--out", default="build/verilog", metavar="DIR", help="folder to write to (build/verilog)")
         command.add_argument("--force", action="store_true", help="replace another tool's files of the same names")
         command.set_defaults(run=run)
+    timing.add_options(commands.add_parser("timing", help="how fast and how large it is on a board"), whole)
     docs_command = commands.add_parser("docs", help="bring the README's tables up to date")
     docs_command.set_defaults(run=docs)
     return main

