@@ -20,6 +20,7 @@ from hw.families.ecp5 import BLOCKS
 from hw.lint import lint
 from hw.parameters import Parameters
 from hw.verilog import TOP, convert, modules
+from sim.machines import BUILD
 from sim.native import NativeMachine
 from sim.rtl import RtlMachine
 
@@ -55,14 +56,10 @@ def multipliers(asked):
 
 
 def rams(asked, rng):
-    """Those of the circuit, then each tiling, with contents and without."""
-    sizes = [(width, words) for bits, words in BLOCKS for width in (bits, bits + 1)] + [(1, 1), (36, 3), (5, 513)]
-    made = [(*size, init) for size in sizes if size[0] <= 36 for init in ((), words(*size, rng))]
-    return sorted(asked.rams) + made
-
-
-def words(width, depth, rng):
-    return tuple(rng.integers(1 << width, size=depth).tolist())
+    """Those of the circuit, then each tiling: full and with contents, and empty with one bit too many."""
+    full = [(width, depth, tuple(rng.integers(1 << width, size=depth).tolist())) for width, depth in BLOCKS]
+    others = [(1, 1), (36, 3), (5, 513), *[(width + 1, depth) for width, depth in BLOCKS[1:]]]
+    return sorted(asked.rams) + full + [(*size, ()) for size in others]
 
 
 def traffic(width, depth, rng):
@@ -77,7 +74,7 @@ def traffic(width, depth, rng):
 
 
 @pytest.fixture(scope="module")
-def twins(asked, tmp_path_factory):
+def twins(asked):
     """(block, inputs, outputs of it and of its twin) of all multipliers, of all block RAMs."""
     rng = np.random.default_rng(1)
     of_two, of_words = multipliers(asked), rams(asked, rng)
@@ -86,7 +83,7 @@ def twins(asked, tmp_path_factory):
     inputs += [traffic(width, depth, rng) for width, depth, _ in of_words]
     blocks = [Multiplier(a, b, registers=registers) for a, b, registers in of_two]
     blocks += [BlockRam(width=width, depth=depth, init=init) for width, depth, init in of_words]
-    outputs = run(blocks, inputs, tmp_path_factory.mktemp("twins"))
+    outputs = run(blocks, inputs, BUILD)
     together = list(zip(of_two + of_words, inputs, outputs, strict=True))
     return together[: len(of_two)], together[len(of_two) :]
 
@@ -141,13 +138,13 @@ def emitted():
     return modules(Parameters(lanes=2, nodes=16, edges=60, materials=8, tables=3, family="ecp5"))
 
 
-def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, tmp_path, monkeypatch, rng):
+def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypatch, rng):
     """In the models a word that is read while it is written is spoilt: the circuit relies on none."""
     image = random_image(rng)
     lane, top, core = emitted
     models = MODELS["ecp5"].read_text()
     monkeypatch.setattr(sim.rtl, "modules", lambda parameters: (lane + models, top + models, core))
-    circuit = RtlMachine(image, parameters=core.parameters, folder=tmp_path)
+    circuit = RtlMachine(image, parameters=core.parameters, folder=BUILD)
     model = NativeMachine(image)
     for steps in (1, 3, 50):
         circuit.step(steps)
