@@ -2,11 +2,13 @@
 PYTHON ?= python3
 JOBS ?= 2
 LANES ?= 2
+UPDATES ?= 1
 BOARD ?= ulx3s-85f
 
 # This make's flags must not reach the makes that Verilator and cocotb start.
 run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
 lanes := --lanes $(LANES)
+updates := --updates $(UPDATES)
 family := $(if $(FAMILY),--family $(FAMILY))
 # The tests of a file go to one worker: what they share is built once.
 pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
@@ -21,8 +23,8 @@ compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on flo
 	@$(run) -m sim compare scenes/*.toml $(lanes) --out build/report
 	@echo "report: build/report/index.html, figures: build/report/compare.json"
 
-verilog: environment ## write the circuit's Verilog below build/; LANES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks
-	@$(run) -m hw verilog $(lanes) $(capacities) $(family) --out build/verilog
+verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks
+	@$(run) -m hw verilog $(lanes) $(updates) $(capacities) $(family) --out build/verilog
 
 timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3"
 	@$(run) -m hw timing --board $(BOARD) $(if $(filter-out file,$(origin LANES)),$(lanes)) $(capacities) \

@@ -73,9 +73,10 @@ def edge_entry() -> dict[str, Q]:
 
 
 def node_entry() -> dict[str, Q]:
-    """When a node may be updated: after so many rows of edges; and which accumulators then hold a force on it, first
-    ends in the lower bits."""
-    return {"need": unsigned(17, 0), "mask": unsigned(16, 0)}
+    """When a node may be updated: after so many rows of edges, the same number for all that are updated at once; and
+    which accumulators then hold a force on it, first ends in the lower bits. An entry that is not ``valid`` fills up.
+    """
+    return {"need": unsigned(17, 0), "mask": unsigned(16, 0), "valid": BIT}
 
 
 def width(record: dict[str, Q]) -> int:

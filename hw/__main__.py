@@ -19,8 +19,10 @@ FORMATS = {
     "operand": "bits of a multiplier's operand",
     "state": "bits of a stored state",
 }
+LETTERS = {"lanes": "P", "updates": "M", "operand": "BITS", "state": "BITS"}
 CAPACITIES = {
     "lanes": "edge processors",
+    "updates": "nodes updated per cycle, 1 or 2",
     "nodes": "nodes it has room for",
     "edges": "edges it has room for",
     "materials": "materials it has room for",
@@ -42,7 +44,7 @@ def parser() -> Parser:
                 f"--{option}",
                 type=whole,
                 default=defaults[option],
-                metavar={"lanes": "P", "operand": "BITS", "state": "BITS"}.get(option, option[0].upper()),
+                metavar=LETTERS.get(option, option[0].upper()),
                 help=f"{meaning} ({defaults[option]})",
             )
         command.add_argument(

@@ -8,6 +8,7 @@ from golden.formats import Formats
 from golden.graph import AXES
 
 from .blocks.memory import READ_LATENCY, BlockRam
+from .parameters import node_place
 
 WRITTEN = 2
 """Cycles from a force to the first in which its sum may be read."""
@@ -21,20 +22,22 @@ class Accumulator(wiring.Component):
     stage replaces what is there.
 
     A force is announced (``valid``, ``node``, ``first``) `READ_LATENCY` cycles before it comes (``pull_*``). Its sum
-    may be read `WRITTEN` cycles after that, `READ_LATENCY` cycles after ``sum_node`` as ``sum_*``.
+    may be read `WRITTEN` cycles after that, `READ_LATENCY` cycles after ``sum_row`` as ``sum<n>_*``: the sums on the
+    ``updates`` nodes of a row of nodes.
 
     Parameters
     ----------
     formats : Formats
-    nodes : int
-        Capacity.
+    nodes, updates : int
+        Capacity; nodes in a row of nodes, a power of two.
     subtract : bool
         Whether forces are taken with the opposite sign: the second end of an edge gets the same integers.
     """
 
-    def __init__(self, *, formats: Formats, nodes: int, subtract: bool = False):
-        self._nodes, self._subtract = nodes, subtract
+    def __init__(self, *, formats: Formats, nodes: int, updates: int = 1, subtract: bool = False):
+        self._nodes, self._updates, self._subtract = nodes, updates, subtract
         bits = max(1, (nodes - 1).bit_length())
+        self._rows = -(-nodes // updates)
         width = formats.accumulator.width
         self.kind = f"accumulator_{'subtract' if subtract else 'add'}"
         super().__init__(
@@ -43,8 +46,8 @@ class Accumulator(wiring.Component):
                 "node": In(bits),
                 "first": In(1),
                 **{f"pull_{axis}": In(signed(width)) for axis in AXES},
-                "sum_node": In(bits),
-                **{f"sum_{axis}": Out(signed(width)) for axis in AXES},
+                "sum_row": In(max(1, (self._rows - 1).bit_length())),
+                **{f"sum{n}_{axis}": Out(signed(width)) for n in range(updates) for axis in AXES},
             }
         )
 
@@ -68,11 +71,10 @@ class Accumulator(wiring.Component):
             forward.append(hit)
 
         for axis in AXES:
-            pull, total = getattr(self, f"pull_{axis}"), getattr(self, f"sum_{axis}")
-            m.submodules[f"sum_{axis}_edges"] = own = BlockRam(width=len(total), depth=self._nodes)
-            m.submodules[f"sum_{axis}_nodes"] = copy = BlockRam(width=len(total), depth=self._nodes)
-            sums = [Signal.like(total, name=f"sum_{axis}_{age}", reset_less=True) for age in recent]
-            before = Signal.like(total, name=f"before_{axis}")
+            pull, width = getattr(self, f"pull_{axis}"), len(getattr(self, f"sum0_{axis}"))
+            m.submodules[f"sum_{axis}_edges"] = own = BlockRam(width=width, depth=self._nodes)
+            sums = [Signal(signed(width), name=f"sum_{axis}_{age}", reset_less=True) for age in recent]
+            before = Signal(signed(width), name=f"before_{axis}")
             m.d.comb += before.eq(own.data)
             for hit, recently in reversed(list(zip(forward, sums, strict=True))):
                 with m.If(hit):
@@ -80,11 +82,21 @@ class Accumulator(wiring.Component):
             start = Mux(first[now], 0, before)
             m.d.sync += sums[0].eq(start - pull if self._subtract else start + pull)
             m.d.sync += Cat(*sums[1:]).eq(Cat(*sums[:-1]))
-            for ram in (own, copy):
+            where = node[now + 1]
+            m.d.comb += [
+                own.write.eq(valid[now + 1]),
+                own.write_address.eq(where),
+                own.write_data.eq(sums[0]),
+                own.address.eq(self.node),
+            ]
+            row, column = node_place(where, self._updates)
+            for n in range(self._updates):
+                m.submodules[f"sum_{axis}_nodes{n}"] = copy = BlockRam(width=width, depth=self._rows)
                 m.d.comb += [
-                    ram.write.eq(valid[now + 1]),
-                    ram.write_address.eq(node[now + 1]),
-                    ram.write_data.eq(sums[0]),
+                    copy.write.eq(valid[now + 1] & (column == n)),
+                    copy.write_address.eq(row),
+                    copy.write_data.eq(sums[0]),
+                    copy.address.eq(self.sum_row),
+                    getattr(self, f"sum{n}_{axis}").eq(copy.data),
                 ]
-            m.d.comb += [own.address.eq(self.node), copy.address.eq(self.sum_node), total.eq(copy.data)]
         return m

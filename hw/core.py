@@ -1,4 +1,4 @@
-"""The coprocessor: lanes, node updater, sequencer and host port. Connections only."""
+"""The coprocessor: lanes, node updaters, sequencer and host port. Connections only."""
 
 from amaranth.hdl import Array, Cat, Module, Mux, Signal
 from amaranth.lib import wiring
@@ -15,7 +15,7 @@ from .fetch import Fetch
 from .host import HostPort, host_signature
 from .lane import NEXT, NODE_WORDS, Lane, latency
 from .parameters import Parameters
-from .registers import NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
+from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from .sequencer import Sequencer
 from .updater import NodeUpdater
 
@@ -38,7 +38,8 @@ class Core(wiring.Component):
     def __init__(self, parameters: Parameters, lane=Lane):
         self.parameters, self._make_lane = parameters, lane
         self.datapath = EdgeDatapath(parameters.formats, parameters.tables, parameters.cost)
-        self.updater = NodeUpdater(parameters)
+        self.updaters = [NodeUpdater(parameters) for _ in range(parameters.updates)]
+        self.updater = self.updaters[0]
         self.faults = sorted({*self.datapath.faults, *self.updater.faults})
         self._check()
         state = parameters.formats.state
@@ -58,8 +59,9 @@ class Core(wiring.Component):
         m = Module()
         self._m, self._lines, p = m, DelayLines(m), self.parameters
         m.submodules.host = self._host = HostPort(Map(p), len(self.faults))
-        m.submodules.sequencer = self._sequencer = Sequencer(row_bits=p.row_bits, node_bits=p.node_bits)
-        m.submodules.updater = updater = self.updater
+        m.submodules.sequencer = self._sequencer = Sequencer(row_bits=p.row_bits, node_bits=p.node_row_bits)
+        for number, updater in enumerate(self.updaters):
+            m.submodules[f"updater{number}"] = updater
         self._lanes = []
         for number in range(p.lanes):
             m.submodules[f"lane{number}"] = lane = self._make_lane(p, self.datapath)
@@ -74,7 +76,8 @@ class Core(wiring.Component):
         self._counters()
 
         fault = Signal(len(self.faults))
-        sources = [(self.datapath.faults, lane.fault) for lane in self._lanes] + [(updater.faults, updater.fault)]
+        sources = [(self.datapath.faults, lane.fault) for lane in self._lanes]
+        sources += [(updater.faults, updater.fault) for updater in self.updaters]
         for number, name in enumerate(self.faults):
             bits = [bit[names.index(name)] for names, bit in sources if name in names]
             m.d.comb += fault[number].eq(Cat(*bits).any())
@@ -82,13 +85,13 @@ class Core(wiring.Component):
         self._lines.build()
         return m
 
-    def _entries(self, name, record, depth, fetch_address):
+    def _entries(self, name, record, depth, fetch_address, host_address):
         """A list's memory: read by its `Fetch`, or by the host while nothing runs."""
         ram = BlockRam(width=records.width(record), depth=depth)
         self._m.submodules[name] = ram
         self._m.d.comb += [
-            ram.address.eq(Mux(self._idle, self._host.index, fetch_address)),
-            ram.write_address.eq(self._host.index),
+            ram.address.eq(Mux(self._idle, host_address, fetch_address)),
+            ram.write_address.eq(host_address),
             ram.write_data.eq(self._host.data),
         ]
         return ram
@@ -101,7 +104,7 @@ class Core(wiring.Component):
         m.submodules.row_fetch = fetch = Fetch(index_bits=p.row_bits, width=width * p.lanes)
         words = []
         for number in range(p.lanes):
-            ram = self._entries(f"edge_entries{number}", record, p.rows, fetch.address)
+            ram = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, host.index)
             m.d.comb += ram.write.eq(self._strobe(Region.EDGE, 0, number))
             words.append(ram.data)
         self._edge_entries = words
@@ -112,11 +115,12 @@ class Core(wiring.Component):
             fetch.take.eq(sequencer.row_take),
         ]
 
-        updated = []
+        updated, self._valid = [], []
         for number, lane in enumerate(self._lanes):
             entry = unpack(record, fetch.word[number * width : (number + 1) * width])
-            ends = [entry[end] < sequencer.updated for end in "ij"]
+            ends = [p.node_place(entry[end])[0] < sequencer.updated for end in "ij"]
             updated.append(~entry["valid"] | ends[0] & ends[1])
+            self._valid.append(entry["valid"])
             m.d.comb += [
                 lane.valid.eq(sequencer.row_take & entry["valid"]),
                 lane.row.eq(fetch.index),
@@ -133,42 +137,54 @@ class Core(wiring.Component):
         ]
 
     def _nodes(self):
-        m, p, host, sequencer, updater = self._m, self.parameters, self._host, self._sequencer, self.updater
+        """A row of nodes is a node for every updater."""
+        m, p, host, sequencer = self._m, self.parameters, self._host, self._sequencer
         record = records.node_entry()
-        m.submodules.node_fetch = fetch = Fetch(index_bits=p.node_bits, width=records.width(record))
-        ram = self._entries("node_entries", record, p.nodes, fetch.address)
-        m.d.comb += ram.write.eq(self._strobe(Region.NODE, Map(p).words(Region.NODE).index("entry")))
-        self._node_entry = ram.data
-        entry = unpack(record, fetch.word)
+        width = records.width(record)
+        m.submodules.node_fetch = fetch = Fetch(index_bits=p.node_row_bits, width=width * p.updates)
+        row, column = p.node_place(host.index)
+        self._node_entries = []
+        for number, updater in enumerate(self.updaters):
+            ram = self._entries(f"node_entries{number}", record, p.node_rows, fetch.address, row)
+            word = Map(p).words(Region.NODE).index("entry")
+            m.d.comb += ram.write.eq(self._strobe(Region.NODE, word) & (column == number))
+            self._node_entries.append(ram.data)
+            entry = unpack(record, fetch.word[number * width : (number + 1) * width])
+            m.d.comb += [
+                updater.valid.eq(sequencer.node_take & entry["valid"]),
+                updater.row.eq(fetch.index),
+                updater.mask.eq(entry["mask"]),
+                updater.velocity_shift.eq(host.velocity_shift),
+                *(bit.eq(value) for bit, value in stage_bits(updater, sequencer.node_stage)),
+            ]
         m.d.comb += [
             fetch.flush.eq(self._idle),
-            fetch.count.eq(host.nodes),
-            fetch.data.eq(ram.data),
+            fetch.count.eq((host.nodes + (p.updates - 1)) >> p.updates.bit_length() - 1),
+            fetch.data.eq(Cat(*self._node_entries)),
             fetch.take.eq(sequencer.node_take),
-            sequencer.nodes.eq(host.nodes),
+            sequencer.nodes.eq(fetch.count),
             sequencer.node_valid.eq(fetch.valid),
             sequencer.node_last.eq(fetch.last),
-            sequencer.node_need.eq(entry["need"]),
-            sequencer.node_updated.eq(self._lines.later(sequencer.node_take, updater.latency, reset=True)),
-            updater.valid.eq(sequencer.node_take),
-            updater.node.eq(fetch.index),
-            updater.mask.eq(entry["mask"]),
-            updater.velocity_shift.eq(host.velocity_shift),
-            *(bit.eq(value) for bit, value in stage_bits(updater, sequencer.node_stage)),
+            sequencer.node_need.eq(unpack(record, fetch.word)["need"]),
+            sequencer.node_updated.eq(self._lines.later(sequencer.node_take, self.updater.latency, reset=True)),
         ]
         for lane in self._lanes:
-            m.d.comb += [lane.update.eq(updater.update), lane.update_node.eq(updater.update_node)]
-            m.d.comb += [getattr(lane, f"update_{w}").eq(getattr(updater, f"update_{w}")) for w in NODE_WORDS]
+            m.d.comb += lane.update_row.eq(self.updater.update_row)
+            for number, updater in enumerate(self.updaters):
+                m.d.comb += getattr(lane, f"update{number}").eq(updater.update)
+                for word in NODE_WORDS:
+                    m.d.comb += getattr(lane, f"update{number}_{word}").eq(getattr(updater, f"update_{word}"))
 
     def _sums(self):
         """First ends of all lanes, then second ends, as in the node entry's mask."""
         for number, lane in enumerate(self._lanes):
-            self._m.d.comb += lane.sum_node.eq(self.updater.node)
+            self._m.d.comb += lane.sum_row.eq(self.updater.row)
             for half, end in enumerate("ij"):
                 bank = half * self.parameters.lanes + number
-                for axis in AXES:
-                    total = getattr(lane, f"sum_{end}_{axis}")
-                    self._m.d.comb += getattr(self.updater, f"sum{bank}_{axis}").eq(total)
+                for n, updater in enumerate(self.updaters):
+                    for axis in AXES:
+                        total = getattr(lane, f"sum{n}_{end}_{axis}")
+                        self._m.d.comb += getattr(updater, f"sum{bank}_{axis}").eq(total)
 
     def _strobe(self, region, word, lane=None):
         host = self._host
@@ -176,24 +192,31 @@ class Core(wiring.Component):
         return here if lane is None else here & (host.lane == lane)
 
     def _host_side(self):
-        m, host, updater = self._m, self._host, self.updater
-        words = Map(self.parameters).words(Region.NODE)
+        m, host, p = self._m, self._host, self.parameters
+        words = Map(p).words(Region.NODE)
+        row, column = p.node_place(host.index)
 
-        def strobes(names):
-            return Cat(self._strobe(Region.NODE, words.index(name)) for name in names)
+        def strobes(names, number):
+            return Cat(self._strobe(Region.NODE, words.index(name)) & (column == number) for name in names)
 
-        m.d.comb += [
-            updater.host.eq(self._idle),
-            updater.host_index.eq(host.index),
-            updater.host_data.eq(host.data),
-            updater.host_write_state.eq(strobes(NODE_STATE)),
-            updater.host_write_load.eq(strobes(NODE_LOAD)),
-            updater.host_write_mass.eq(strobes(["inverse_mass"])),
-        ]
-        word, lane = (self._lines.later(signal, READ_LATENCY) for signal in (host.word, host.lane))
-        reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
-        reads += [updater.host_mass, self._node_entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
-        m.d.comb += host.node_word.eq(Array(reads)[word])
+        word, lane, read_column = (
+            self._lines.later(signal, READ_LATENCY, name=name)
+            for signal, name in ((host.word, "word"), (host.lane, "lane"), (column, "column"))
+        )
+        nodes = []
+        for number, (updater, entry) in enumerate(zip(self.updaters, self._node_entries, strict=True)):
+            m.d.comb += [
+                updater.host.eq(self._idle),
+                updater.host_index.eq(row),
+                updater.host_data.eq(host.data),
+                updater.host_write_state.eq(strobes(NODE_STATE, number)),
+                updater.host_write_load.eq(strobes(NODE_LOAD, number)),
+                updater.host_write_mass.eq(strobes(["inverse_mass"], number)),
+            ]
+            reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
+            reads += [updater.host_mass, entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
+            nodes.append(Array(reads)[word])
+        m.d.comb += host.node_word.eq(Array(nodes)[read_column])
 
         edges, materials, tables = [], [], []
         for number, (port, entry) in enumerate(zip(self._lanes, self._edge_entries, strict=True)):
@@ -227,14 +250,16 @@ class Core(wiring.Component):
             host.busy.eq(sequencer.busy),
             host.steps_done.eq(sequencer.steps_done),
         ]
-        events = (("cycles", sequencer.busy), ("rows_issued", sequencer.row_take), ("row_waits", sequencer.row_waits))
-        for name, event in events:
+        events = {
+            "cycles": sequencer.busy,
+            "rows_issued": sequencer.row_take,
+            "edges_issued": Mux(sequencer.row_take, sum(self._valid), 0),
+            **{name: getattr(sequencer, name) for name in ("node_waits", "list_waits", "end_waits")},
+        }
+        for name in COUNTERS.values():
             counter = Signal(len(host.cycles), name=name)
             m.d.comb += getattr(host, name).eq(counter)
-            with m.If(host.start):
-                m.d.sync += counter.eq(0)
-            with m.Elif(event):
-                m.d.sync += counter.eq(counter + 1)
+            m.d.sync += counter.eq(Mux(host.start, 0, counter + events[name]))
 
 
 def unpack(record, word):

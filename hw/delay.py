@@ -1,6 +1,6 @@
 """Delay lines: a value some cycles later."""
 
-from amaranth.hdl import Module, Signal, Value
+from amaranth.hdl import Const, Module, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -64,7 +64,7 @@ class DelayLines:
         reset : bool
             Whether the value is 0 after a reset. What only matters beside something valid needs none.
         """
-        if not cycles:
+        if not cycles or isinstance(value, Const):
             return value
         name = name or value.name
         _, taps = self._lines.setdefault((id(value), reset), (value, {}))

@@ -7,6 +7,7 @@ from amaranth.lib.wiring import In, Out
 from .blocks.memory import READ_LATENCY
 from .registers import (
     ADDRESS_BITS,
+    COUNTERS,
     INDEX_BITS,
     LANE_BITS,
     MAGIC,
@@ -52,7 +53,7 @@ class HostPort(wiring.Component):
     <region>_word : In
         What the region's memories hold at the access's address, `READ_LATENCY` cycles later.
     start, steps : Out
-    busy, cycles, rows_issued, row_waits, steps_done, fault : In
+    busy, <counters of `hw.registers.COUNTERS`>, steps_done, fault : In
     rows, nodes, velocity_shift : Out
     """
 
@@ -72,9 +73,7 @@ class HostPort(wiring.Component):
                 "start": Out(1),
                 "steps": Out(32),
                 "busy": In(1),
-                "cycles": In(state),
-                "rows_issued": In(state),
-                "row_waits": In(state),
+                **{name: In(state) for name in COUNTERS.values()},
                 "steps_done": In(32),
                 "fault": In(faults),
                 "rows": Out(p.row_bits + 1),
@@ -176,14 +175,13 @@ class HostPort(wiring.Component):
             Control.MAGIC: Const(MAGIC, state),
             Control.VERSION: Const(VERSION, state),
             Control.LANES: Const(p.lanes, state),
+            Control.UPDATES: Const(p.updates, state),
             Control.NODES: Const(p.nodes, state),
             Control.ROWS: Const(p.rows, state),
             Control.MATERIALS: Const(p.materials, state),
             Control.TABLES: Const(p.tables, state),
             Control.BUSY: self.busy,
-            Control.CYCLES: self.cycles,
-            Control.ROWS_ISSUED: self.rows_issued,
-            Control.ROW_WAITS: self.row_waits,
+            **{counter: getattr(self, name) for counter, name in COUNTERS.items()},
             Control.STEPS_DONE: self.steps_done,
             Control.FAULTS: self._sticky,
             Control.REFUSED: refused,

@@ -1,6 +1,6 @@
 """A lane: an edge processor, the memories of its edges, its copy of the nodes and its sums of forces."""
 
-from amaranth.hdl import Module
+from amaranth.hdl import Array, Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -27,6 +27,7 @@ def latency(datapath: EdgeDatapath) -> int:
 def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
     """The ports of a lane."""
     p, fmt = parameters, parameters.formats
+    ends = [(n, end, axis) for n in range(p.updates) for end in "ij" for axis in AXES]
     materials = records.material(fmt, p.tables)
     node_formats = {"x": fmt.position, "v": fmt.velocity}
     return {
@@ -37,11 +38,11 @@ def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
         "material": In(p.material_bits),
         **{f"stage_{bit}": In(1) for bit in ("first", "last", "half", "double")},
         "velocity_shift": In(shape(fmt.exponent)),
-        "update": In(len(NODE_WORDS)),
-        "update_node": In(p.node_bits),
-        **{f"update_{word}": In(shape(node_formats[word[0]])) for word in NODE_WORDS},
-        "sum_node": In(p.node_bits),
-        **{f"sum_{end}_{axis}": Out(shape(fmt.accumulator)) for end in "ij" for axis in AXES},
+        "update_row": In(p.node_row_bits),
+        **{f"update{n}": In(len(NODE_WORDS)) for n in range(p.updates)},
+        **{f"update{n}_{word}": In(shape(node_formats[word[0]])) for n in range(p.updates) for word in NODE_WORDS},
+        "sum_row": In(p.node_row_bits),
+        **{f"sum{n}_{end}_{axis}": Out(shape(fmt.accumulator)) for n, end, axis in ends},
         "fault": Out(len(datapath.faults)),
         "host": In(1),
         "host_index": In(p.index_bits),
@@ -72,10 +73,10 @@ class Lane(wiring.Component):
         The Runge-Kutta stage it is issued in.
     velocity_shift : In
         Static.
-    update, update_node, update_x_*, update_v_* : In
-        A node's new state; ``update`` has a bit for each of `NODE_WORDS`.
-    sum_node : In, sum_i_*, sum_j_* : Out
-        The forces summed on a node as first and as second end of edges, `READ_LATENCY` cycles later.
+    update_row, update<n>, update<n>_x_*, update<n>_v_* : In
+        The new states of the nodes of a row; ``update<n>`` has a bit for each of `NODE_WORDS`.
+    sum_row : In, sum<n>_i_*, sum<n>_j_* : Out
+        The forces summed on a row's nodes as first and as second ends of edges, `READ_LATENCY` cycles later.
     fault : Out
         One bit for each name in ``datapath.faults``.
     host_* : In / Out
@@ -118,19 +119,24 @@ class Lane(wiring.Component):
 
     def _nodes(self):
         """Two copies of the nodes' states, one for each end of an edge."""
+        p = self.parameters
         for end in "ij":
+            row, column = p.node_place(getattr(self, end))
+            column = self._lines.later(column, READ_LATENCY, name=f"{end}_column")
             for number, word in enumerate(NODE_WORDS):
-                source = getattr(self, f"update_{word}")
-                ram = BlockRam(width=len(source), depth=self.parameters.nodes)
-                self._m.submodules[f"node_{end}_{word}"] = ram
-                target = getattr(self._edge, f"{end}_{word}")
-                self._m.d.comb += [
-                    ram.write.eq(self.update[number]),
-                    ram.write_address.eq(self.update_node),
-                    ram.write_data.eq(source),
-                    ram.address.eq(getattr(self, end)),
-                    target.eq(ram.data),
-                ]
+                target, words = getattr(self._edge, f"{end}_{word}"), []
+                for n in range(p.updates):
+                    source = getattr(self, f"update{n}_{word}")
+                    ram = BlockRam(width=len(source), depth=p.node_rows)
+                    self._m.submodules[f"node_{end}_{word}_{n}"] = ram
+                    self._m.d.comb += [
+                        ram.write.eq(getattr(self, f"update{n}")[number]),
+                        ram.write_address.eq(self.update_row),
+                        ram.write_data.eq(source),
+                        ram.address.eq(row),
+                    ]
+                    words.append(ram.data)
+                self._m.d.comb += target.eq(Array(words)[column])
 
     def _edges(self):
         """The edges' own words, each read when the edge processor needs it and written when it is done."""
@@ -184,18 +190,17 @@ class Lane(wiring.Component):
     def _sums(self):
         p, announce = self.parameters, self._ready("pull_x") - READ_LATENCY
         for end in "ij":
-            sums = Accumulator(formats=p.formats, nodes=p.nodes, subtract=end == "j")
+            sums = Accumulator(formats=p.formats, nodes=p.nodes, updates=p.updates, subtract=end == "j")
             self._m.submodules[f"sums_{end}"] = sums
             self._m.d.comb += [
                 sums.valid.eq(self._later("valid", announce)),
                 sums.node.eq(self._later(end, announce)),
                 sums.first.eq(self._later(f"{end}_first", announce)),
-                sums.sum_node.eq(self.sum_node),
+                sums.sum_row.eq(self.sum_row),
             ]
             for axis in AXES:
-                self._m.d.comb += [
-                    getattr(sums, f"pull_{axis}").eq(getattr(self._edge, f"pull_{axis}")),
-                    getattr(self, f"sum_{end}_{axis}").eq(getattr(sums, f"sum_{axis}")),
-                ]
+                self._m.d.comb += getattr(sums, f"pull_{axis}").eq(getattr(self._edge, f"pull_{axis}"))
+                for n in range(p.updates):
+                    self._m.d.comb += getattr(self, f"sum{n}_{end}_{axis}").eq(getattr(sums, f"sum{n}_{axis}"))
         ready = {self._ready(f"pull_{axis}") for axis in AXES}
         assert len(ready) == 1, "the components of a force come in the same cycle"

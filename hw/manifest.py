@@ -70,6 +70,7 @@ def manifest(core: Core, verilog: str, key: str) -> dict:
 def parameters(p: Parameters) -> dict:
     return {
         "lanes": p.lanes,
+        "updates": p.updates,
         "nodes": p.nodes,
         "edges": p.edges,
         "rows": p.rows,

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from amaranth.hdl import Const, Value
+
 from golden import records
 from golden.formats import Formats
 
@@ -19,6 +21,8 @@ class Parameters:
     ----------
     lanes : int
         Edge processors, 1 to 8.
+    updates : int
+        Nodes updated per cycle, 1 or 2: node updaters, each with its share of every memory of nodes.
     nodes, edges, materials, tables : int
         Capacity. Each lane holds ``edges / lanes`` edges, rounded up.
     formats : Formats
@@ -36,6 +40,7 @@ class Parameters:
     """
 
     lanes: int = 4
+    updates: int = 1
     nodes: int = 512
     edges: int = 4096
     materials: int = 16
@@ -46,6 +51,7 @@ class Parameters:
 
     RANGES = {  # noqa: RUF012 (a constant)
         "lanes": (1, NODE["mask"].width // 2),
+        "updates": (1, 2),
         "nodes": (2, EDGE["i"].raw_max + 1),
         "edges": (1, 1 << 16),  # index bits of a host address
         "materials": (1, EDGE["material"].raw_max + 1),
@@ -77,6 +83,18 @@ class Parameters:
         return (self.nodes - 1).bit_length()
 
     @property
+    def node_rows(self) -> int:
+        """Nodes an updater holds."""
+        return -(-self.nodes // self.updates)
+
+    @property
+    def node_row_bits(self) -> int:
+        return max(1, (self.node_rows - 1).bit_length())
+
+    def node_place(self, node):
+        return node_place(node, self.updates)
+
+    @property
     def material_bits(self) -> int:
         return max(1, (self.materials - 1).bit_length())
 
@@ -85,3 +103,9 @@ class Parameters:
         """Bits of a host address's index, for the deepest memory."""
         table = self.tables << self.formats.damper_index.width
         return (max(self.rows, self.nodes, self.materials, table) - 1).bit_length()
+
+
+def node_place(node: Value, updates: int) -> tuple[Value, Value]:
+    """(row, column) of a node's number: the updater ``column`` holds it as its ``row``."""
+    bits = updates.bit_length() - 1
+    return (node[bits:], node[:bits]) if bits else (node, Const(0, 1))

@@ -30,21 +30,25 @@ class Control(IntEnum):
     MAGIC = 0
     VERSION = 1
     LANES = 2
-    NODES = 3
-    ROWS = 4
-    MATERIALS = 5
-    TABLES = 6
-    BUSY = 7
-    CYCLES = 8
-    ROWS_ISSUED = 9
-    ROW_WAITS = 10
-    STEPS_DONE = 11
-    FAULTS = 12
-    REFUSED = 13
-    ROW_COUNT = 14
-    NODE_COUNT = 15
-    VELOCITY_SHIFT = 16
-    RUN = 17
+    UPDATES = 3
+    NODES = 4
+    ROWS = 5
+    MATERIALS = 6
+    TABLES = 7
+    BUSY = 8
+    CYCLES = 9
+    ROWS_ISSUED = 10
+    EDGES_ISSUED = 11
+    NODE_WAITS = 12
+    LIST_WAITS = 13
+    END_WAITS = 14
+    STEPS_DONE = 15
+    FAULTS = 16
+    REFUSED = 17
+    ROW_COUNT = 18
+    NODE_COUNT = 19
+    VELOCITY_SHIFT = 20
+    RUN = 21
 
 
 READ_ONLY = frozenset(control for control in Control if control <= Control.STEPS_DONE)
@@ -53,14 +57,18 @@ CONTROL_TEXT = {
     Control.MAGIC: "`RHEO`",
     Control.VERSION: "of this map",
     Control.LANES: "edge processors",
+    Control.UPDATES: "nodes updated per cycle",
     Control.NODES: "capacity",
     Control.ROWS: "capacity: edges of each lane",
     Control.MATERIALS: "capacity",
     Control.TABLES: "capacity: damper tables",
     Control.BUSY: "1 while steps are run",
     Control.CYCLES: "of the last run",
-    Control.ROWS_ISSUED: "in the last run",
-    Control.ROW_WAITS: "cycles of the last run in which a row waited for its nodes",
+    Control.ROWS_ISSUED: "in the last run: cycles in which the lanes took a row of edges",
+    Control.EDGES_ISSUED: "in the last run: a list's last row may lack some",
+    Control.NODE_WAITS: "cycles of the last run in which a row waited for its nodes to be updated",
+    Control.LIST_WAITS: "cycles of the last run in which the list of rows had not been read yet",
+    Control.END_WAITS: "cycles of the last run after its last row; with rows issued and the other waits all cycles",
     Control.STEPS_DONE: "in the last run",
     Control.FAULTS: "sticky, a bit for each name of the manifest; a 1 that is written clears it",
     Control.REFUSED: "requests refused; any write clears it",
@@ -69,6 +77,11 @@ CONTROL_TEXT = {
     Control.VELOCITY_SHIFT: "the velocity full scale is 2^-this sizes per step",
     Control.RUN: "a write runs so many steps, at least 1",
 }
+
+COUNTERS = {
+    control: control.name.lower() for control in Control if Control.CYCLES <= control <= Control.END_WAITS
+}
+"""What the machine counts in a run, and the names of the counters' ports."""
 
 NODE_STATE = tuple(f"{quantity}_{axis}" for quantity in "xv" for axis in AXES)
 NODE_LOAD = tuple(f"load_{axis}" for axis in AXES)

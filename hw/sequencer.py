@@ -34,8 +34,9 @@ class Sequencer(wiring.Component):
         A row's forces may be read; a node's new state has been written.
     updated : Out
         Nodes updated in the stage before the front row's, as far as that one is not finished.
-    row_waits : Out(1)
-        A row stands in front and may not go yet.
+    node_waits, list_waits, end_waits : Out(1)
+        Why no row goes in this cycle of the run: the one in front waits for its nodes, there is none yet, or the last
+        has gone.
     """
 
     def __init__(self, *, row_bits: int, node_bits: int, step_bits: int = 32):
@@ -52,7 +53,9 @@ class Sequencer(wiring.Component):
                 "row_nodes": In(1),
                 "row_take": Out(1),
                 "row_stage": Out(STAGE_BITS),
-                "row_waits": Out(1),
+                "node_waits": Out(1),
+                "list_waits": Out(1),
+                "end_waits": Out(1),
                 "node_valid": In(1),
                 "node_last": In(1),
                 "node_need": In(row_bits + 1),
@@ -80,7 +83,9 @@ class Sequencer(wiring.Component):
         complete = (sum_lead != 0) | (summed >= self.node_need) & ~self.node_last
         m.d.comb += [
             self.row_take.eq(self.busy & ~rows_over & self.row_valid & may_go),
-            self.row_waits.eq(self.busy & ~rows_over & self.row_valid & ~may_go),
+            self.node_waits.eq(self.busy & ~rows_over & self.row_valid & ~may_go),
+            self.list_waits.eq(self.busy & ~rows_over & ~self.row_valid),
+            self.end_waits.eq(self.busy & rows_over),
             self.node_take.eq(self.busy & ~nodes_over & self.node_valid & complete),
         ]
 

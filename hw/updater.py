@@ -1,4 +1,4 @@
-"""The node updater: one node per cycle, from the sums of forces to the next stage's position and velocity."""
+"""A node updater: one node per cycle, from the sums of forces to the next stage's position and velocity."""
 
 from functools import cached_property
 
@@ -23,21 +23,21 @@ RESULTS = {"x_base": "x_base_next", "v_base": "v_base_next", "v": "v", "x_total"
 
 
 class NodeUpdater(wiring.Component):
-    """`golden.node.node` as a pipeline, with the memories of the nodes' own words.
+    """`golden.node.node` as a pipeline, with the memories of the nodes' own words: of one node in each row of nodes.
 
     Latency: a node's new state is on ``update_*`` ``latency`` cycles after it was issued. Throughput one node a cycle.
 
     Members
     -------
-    valid, node : In
-        The node that is issued.
+    valid, row : In
+        The row of the node that is issued.
     mask : In
         Which accumulators hold a force on it, two for each lane (first ends, second ends); read with the node.
     stage_first, stage_last, stage_half, stage_double : In(1)
     velocity_shift : In
     sum<bank>_* : In
         The sums of forces on the node, `READ_LATENCY` cycles after it was issued.
-    update, update_node, update_x_*, update_v_* : Out
+    update, update_row, update_x_*, update_v_* : Out
         As `hw.lane.Lane` takes them.
     fault : Out
         One bit for each name in ``faults``.
@@ -55,13 +55,13 @@ class NodeUpdater(wiring.Component):
         super().__init__(
             {
                 "valid": In(1),
-                "node": In(parameters.node_bits),
+                "row": In(parameters.node_row_bits),
                 "mask": In(self.banks),
                 **{f"stage_{bit}": In(1) for bit in ("first", "last", "half", "double")},
                 "velocity_shift": In(shape(fmt.exponent)),
                 **{f"sum{bank}_{axis}": In(shape(fmt.accumulator)) for bank in range(self.banks) for axis in AXES},
                 "update": Out(len(NODE_WORDS)),
-                "update_node": Out(parameters.node_bits),
+                "update_row": Out(parameters.node_row_bits),
                 **{f"update_{word}": Out(shape(update[word[0]])) for word in NODE_WORDS},
                 "fault": Out(len(self.faults)),
                 "host": In(1),
@@ -118,9 +118,9 @@ class NodeUpdater(wiring.Component):
 
     def _memory(self, name: str, width: int, arrival: int) -> BlockRam:
         """A word per node, read for ``arrival``, or for the host."""
-        ram = BlockRam(width=width, depth=self.parameters.nodes)
+        ram = BlockRam(width=width, depth=self.parameters.node_rows)
         self._m.submodules[name] = ram
-        address = self._later(self.node, arrival - READ_LATENCY)
+        address = self._later(self.row, arrival - READ_LATENCY)
         self._m.d.comb += ram.address.eq(Mux(self.host, self.host_index, address))
         return ram
 
@@ -170,7 +170,7 @@ class NodeUpdater(wiring.Component):
                 ram = memories[f"{quantity}_{axis}"]
                 m.d.comb += [
                     ram.write.eq(self._later(self.valid, done)),
-                    ram.write_address.eq(self._later(self.node, done)),
+                    ram.write_address.eq(self._later(self.row, done)),
                     ram.write_data.eq(pipe.output(f"{result}_{axis}", done)),
                 ]
         for number, word in enumerate(NODE_WORDS):
@@ -185,13 +185,13 @@ class NodeUpdater(wiring.Component):
             self._host_writes(base, strobe)
             if quantity == "v":
                 self._host_writes(memories[word], strobe)
-        m.d.comb += self.update_node.eq(Mux(self.host, self.host_index, self._later(self.node, done)))
+        m.d.comb += self.update_row.eq(Mux(self.host, self.host_index, self._later(self.row, done)))
         for axis in AXES:
-            force = BlockRam(width=self.parameters.formats.state, depth=self.parameters.nodes)
+            force = BlockRam(width=self.parameters.formats.state, depth=self.parameters.node_rows)
             m.submodules[f"force_{axis}"] = force
             m.d.comb += [
                 force.write.eq(self._later(self.valid, done)),
-                force.write_address.eq(self._later(self.node, done)),
+                force.write_address.eq(self._later(self.row, done)),
                 force.write_data.eq(pipe.output(f"force_{axis}", done)),
                 force.address.eq(self.host_index),
                 getattr(self, f"host_force_{axis}").eq(force.data),

@@ -15,7 +15,8 @@ Write = tuple[int, int]
 
 
 class Program:
-    """The layout of an image in a circuit: edge e is in lane ``e % lanes``, row ``e // lanes``.
+    """The layout of an image in a circuit: edge e is in lane ``e % lanes``, row ``e // lanes``; node n is updated by
+    ``n % updates`` in the row of nodes ``n // updates``.
 
     Raises
     ------
@@ -114,7 +115,9 @@ class Program:
     def _entries(self):
         """Edge and node entries: see `golden.records`."""
         image, lanes = self.image, self.parameters.lanes
-        need, mask = np.zeros(image.nodes, int), np.zeros(image.nodes, int)
+        updates = self.parameters.updates
+        places = -(-image.nodes // updates) * updates
+        need, mask = np.zeros(places, int), np.zeros(places, int)
         for place in range(self.rows * lanes):
             row, lane = self._place(place)
             fields = dict.fromkeys(records.edge_entry(), 0)
@@ -126,6 +129,8 @@ class Program:
                     mask[n] |= bank
                     need[n] = row + 1
             yield self._address(Region.EDGE, "entry", row, lane), records.pack(records.edge_entry(), fields)
-        for n in range(image.nodes):
-            entry = records.pack(records.node_entry(), {"need": need[n], "mask": mask[n]})
+        need = np.repeat(need.reshape(-1, updates).max(axis=1), updates)
+        for n in range(places):
+            fields = {"need": need[n], "mask": mask[n], "valid": int(n < image.nodes)}
+            entry = records.pack(records.node_entry(), fields)
             yield self._address(Region.NODE, "entry", n), entry

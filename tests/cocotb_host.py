@@ -86,11 +86,14 @@ class Host:
         return await self.wait()
 
     async def wait(self):
-        """Until the run is over: [cycles, rows issued, waits of a row], counted on the way."""
-        counted = np.zeros(3, int)
+        """Until the run is over: its counters (`hw.registers.COUNTERS`), counted on the way."""
+        counted = np.zeros(6, int)
         while int(self.dut.busy.value):
             sequencer = self.dut.sequencer
-            counted += [1, int(sequencer.row_take.value), int(sequencer.row_waits.value)]
+            row = int(sequencer.row_take.value)
+            edges = row * sum(int(getattr(self.dut, f"lane{n}_valid").value) for n in range(PARAMETERS.lanes))
+            waits = [int(getattr(sequencer, f"{why}_waits").value) for why in ("node", "list", "end")]
+            counted += [1, row, edges, *waits]
             await self.cycle()
         return list(counted)
 

@@ -44,8 +44,8 @@ def accumulate(dut, nodes, first, pulls, gaps, noise):
                 break
             await ctx.tick()
         for node in [*range(NODES), *[0] * READ_LATENCY]:
-            sums.append([ctx.get(getattr(dut, f"sum_{axis}")) for axis in AXES])
-            ctx.set(dut.sum_node, node)
+            sums.append([ctx.get(getattr(dut, f"sum0_{axis}")) for axis in AXES])
+            ctx.set(dut.sum_row, node)
             await ctx.tick()
 
     simulate(dut, bench)
@@ -105,9 +105,9 @@ def test_a_sum_may_be_read_as_soon_as_it_says(rng):
             ctx.set(dut.node, cycle % NODES)
             if cycle >= READ_LATENCY:
                 ctx.set(dut.pull_x, pulls[cycle - READ_LATENCY])
-            ctx.set(dut.sum_node, (cycle - READ_LATENCY - WRITTEN) % NODES)
+            ctx.set(dut.sum_row, (cycle - READ_LATENCY - WRITTEN) % NODES)
             if cycle >= 2 * READ_LATENCY + WRITTEN:
-                seen.append(ctx.get(dut.sum_x))
+                seen.append(ctx.get(dut.sum0_x))
             await ctx.tick()
 
     simulate(dut, bench)

@@ -58,7 +58,7 @@ def test_writes_verilog_and_manifest(emitted, out, capsys):
     assert run(out) == 0
     assert {path.name for path in out.iterdir()} == {VERILOG, MANIFEST}
     text, contents = (out / VERILOG).read_text(), json.loads((out / MANIFEST).read_text())
-    description = "2 lanes, 16 nodes, 20 edges, 3 materials, 1 table, 18-bit operands, 36-bit states"
+    description = "2 lanes, 1 update, 16 nodes, 20 edges, 3 materials, 1 table, 18-bit operands, 36-bit states"
     header = f"// Rheogate: {description}. Written by `python -m hw verilog`; manifest.json goes with it.\n"
     assert text == header + TEXT
     assert contents["files"][VERILOG]["sha256"] == manifest.digest(text)
@@ -218,7 +218,7 @@ IMPOSSIBLE = {
     "--operand 25": "--operand must be 12 to 24 bits, not 25",
     "--state 45": "--state must be 24 to 44 bits, not 45",
     "--operand 20": "--operand must be at most 18 bits, half of a state word, not 20",
-    "--operand 12 --state 32": "--state must be at least 33 bits, as a list's entry has, not 32",
+    "--operand 12 --state 32": "--state must be at least 34 bits, as a list's entry has, not 32",
     "--family ice40": "--family must be generic or ecp5, not 'ice40'",
     "--lanes two": f"argument --lanes: must be a whole number, not 'two' {HELP}",
     "--lanes 1.5": f"argument --lanes: must be a whole number, not '1.5' {HELP}",
@@ -239,7 +239,7 @@ def test_progress_only_where_somebody_watches(emitted, out, capsys, monkeypatch)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     run(out, "--lanes", "1")
     error = capsys.readouterr().err
-    assert error.startswith("writing the Verilog of 1 lane, 16 nodes") and "\n" not in error
+    assert error.startswith("writing the Verilog of 1 lane, 1 update, 16 nodes") and "\n" not in error
     assert error.split("\r")[1].strip() == "" and error.endswith("\r")
 
 

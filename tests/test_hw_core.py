@@ -85,8 +85,9 @@ def loading(program):
     return [(address, data) for address, data in program.load() if data or address < table]
 
 
-@pytest.mark.parametrize(("lanes", "press", "hold"), [(1, [1, 2], [1]), (2, [1], [1])])
-def test_a_pressed_block(lanes, press, hold, rng):
+@pytest.mark.parametrize(
+    ("lanes", "updates", "press", "hold"), [(1, 1, [1, 2], [1]), (2, 1, [1], [1]), (2, 2, [1], [1])])
+def test_a_pressed_block(lanes, updates, press, hold, rng):
     """In runs of one step and of more; a new phase; counters; and the door is shut while it runs."""
     mesh = irregular((3, 2), rng)
     kinds = MATERIALS["rheological"], MATERIALS["plastic"]
@@ -94,7 +95,7 @@ def test_a_pressed_block(lanes, press, hold, rng):
     loaded = load(scene)
     image = loaded.image
     image.damper = {name: np.zeros_like(raw) for name, raw in image.damper.items()}  # linear dampers need none
-    core, program, machine = circuit(image, lanes)
+    core, program, machine = circuit(image, lanes, updates=updates)
     host = Host(core)
 
     async def bench(ctx):
@@ -107,8 +108,11 @@ def test_a_pressed_block(lanes, press, hold, rng):
                 machine.step(steps)
                 await host.run(ctx, steps)
                 await host.assert_same(ctx, program, machine)
-                done, rows = await host.registers(ctx, Control.STEPS_DONE, Control.ROWS_ISSUED)
-                assert (done, rows) == (steps, 4 * steps * program.rows)
+                names = (Control.STEPS_DONE, Control.ROWS_ISSUED, Control.EDGES_ISSUED, Control.CYCLES)
+                done, rows, edges, cycles = await host.registers(ctx, *names)
+                assert (done, rows, edges) == (steps, 4 * steps * program.rows, 4 * steps * len(image.edges))
+                waits = await host.registers(ctx, Control.NODE_WAITS, Control.LIST_WAITS, Control.END_WAITS)
+                assert cycles == rows + sum(waits)
         assert not machine.faults and (machine.x != image.x).any()
 
         if lanes > 1:

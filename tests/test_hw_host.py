@@ -6,15 +6,16 @@ from host_port import FAULTS, MAP, MEMORIES, STATE, P, Port, content, control, u
 from hw_objects import simulate
 
 from hw.host import LATENCY
+from hw.registers import COUNTERS as NAMES
 from hw.registers import MAGIC, READ_ONLY, VERSION, Control, Region, join
 
 FIXED = {
-    Control.MAGIC: MAGIC, Control.VERSION: VERSION, Control.LANES: 3, Control.NODES: 20, Control.ROWS: 11,
-    Control.MATERIALS: 5, Control.TABLES: 1,
+    Control.MAGIC: MAGIC, Control.VERSION: VERSION, Control.LANES: 3, Control.UPDATES: 1, Control.NODES: 20,
+    Control.ROWS: 11, Control.MATERIALS: 5, Control.TABLES: 1,
 }
 COUNTERS = {
-    Control.CYCLES: ("cycles", 1 << 35), Control.ROWS_ISSUED: ("rows_issued", 12345),
-    Control.ROW_WAITS: ("row_waits", 77), Control.STEPS_DONE: ("steps_done", 4_000_000_000),
+    **{control: (name, 12345 + (1 << 30 + control // 3)) for control, name in NAMES.items()},
+    Control.STEPS_DONE: ("steps_done", 4_000_000_000),
 }
 BEYOND = {
     region: dict(index=MAP.depth(region), word=len(MAP.words(region)), lane=MAP.lanes(region)) for region in Region

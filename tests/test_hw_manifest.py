@@ -42,7 +42,8 @@ def test_hashes(contents):
 
 def test_parameters(contents):
     assert contents["parameters"] == {
-        "lanes": 3, "nodes": 20, "edges": 31, "rows": 11, "materials": 5, "tables": 2, "operand": 18, "state": 36,
+        "lanes": 3, "updates": 1, "nodes": 20, "edges": 31, "rows": 11, "materials": 5, "tables": 2, "operand": 18,
+        "state": 36,
         "family": "generic"}
 
 
@@ -68,7 +69,7 @@ def test_an_address_is_put_together_as_the_fields_say(contents):
 
 def test_capacities(regions):
     sizes = {name: (region["depth"], region["lanes"]) for name, region in regions.items()}
-    assert sizes == {"CONTROL": (18, 1), "NODE": (20, 1), "EDGE": (11, 3), "MATERIAL": (5, 3), "TABLE": (1024, 3)}
+    assert sizes == {"CONTROL": (22, 1), "NODE": (20, 1), "EDGE": (11, 3), "MATERIAL": (5, 3), "TABLE": (1024, 3)}
 
 
 def test_fields_are_packed_from_the_lowest_bit(regions):

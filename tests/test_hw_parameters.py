@@ -20,7 +20,10 @@ from hw.registers import (
     join,
 )
 
-RANGES = {"lanes": (1, 8), "nodes": (2, 4096), "edges": (1, 65536), "materials": (1, 64), "tables": (1, 16)}
+RANGES = {
+    "lanes": (1, 8), "updates": (1, 2), "nodes": (2, 4096), "edges": (1, 65536), "materials": (1, 64),
+    "tables": (1, 16),
+}
 LARGEST = Parameters(**{name: high for name, (_, high) in RANGES.items()})
 SMALLEST = Parameters(**{name: low for name, (low, _) in RANGES.items()})
 EXAMPLES = [Parameters(), SMALLEST, LARGEST, Parameters(lanes=3, nodes=100, edges=1000), Parameters(lanes=8, edges=1)]
@@ -42,9 +45,9 @@ def test_a_family_that_nobody_knows(family):
 
 
 def test_a_list_entry_fits_a_state_word():
-    Parameters(formats=Formats(16, 33))
-    refused(lambda: Parameters(formats=Formats(16, 32)),
-            "state must be at least 33 bits, as a list's entry has, not 32")
+    Parameters(formats=Formats(16, 34))
+    refused(lambda: Parameters(formats=Formats(16, 33)),
+            "state must be at least 34 bits, as a list's entry has, not 33")
 
 
 @pytest.mark.parametrize("p", EXAMPLES, ids=str)
@@ -115,7 +118,7 @@ def test_a_word_may_be_named():
     ((Region.EDGE, 0, -1), "EDGE index must be below 1024, not -1"),
     ((Region.MATERIAL, 0, 0, 4), "MATERIAL lane must be below 4, not 4"),
     ((Region.NODE, 0, 0, 1), "NODE lane must be below 1, not 1"),
-    ((Region.CONTROL, 0, 18), "CONTROL index must be below 18, not 18"),
+    ((Region.CONTROL, 0, 22), "CONTROL index must be below 22, not 22"),
 ])
 def test_there_is_no_address_of_nothing(place, message):
     refused(lambda: Map(Parameters()).address(*place), message)

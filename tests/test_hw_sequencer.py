@@ -102,7 +102,7 @@ class Run:
             assert ctx.get(dut.node_stage) == node_stage % RK4.stages
             needed = len(lists.rows) * node_stage + lists.need[node]
             assert self.rows_summed >= needed, "a node went before its rows were summed"
-        waits = ctx.get(dut.row_waits)
+        waits = ctx.get(dut.node_waits)
         assert waits <= row_valid and not (waits and row_take)
         self.waits += waits
         self.rows_taken += row_take

@@ -68,7 +68,7 @@ class Bench:
             ctx.set(self.dut.host_data, int(value))
             if strobe is self.dut.host_write_state:  # the lanes' copies see it too
                 word = NODE_WORDS[bit]
-                assert ctx.get(self.dut.update) == 1 << bit and ctx.get(self.dut.update_node) == index
+                assert ctx.get(self.dut.update) == 1 << bit and ctx.get(self.dut.update_row) == index
                 assert ctx.get(getattr(self.dut, f"update_{word}")) == value
             await ctx.tick()
         ctx.set(strobe, 0)
@@ -100,7 +100,7 @@ class Bench:
             node, summed, done = issued.get(cycle), issued.get(cycle - READ_LATENCY), issued.get(cycle - dut.latency)
             ctx.set(dut.valid, node is not None)
             if node is not None:
-                ctx.set(dut.node, node)
+                ctx.set(dut.row, node)
                 ctx.set(dut.mask, sum(int(bit) << bank for bank, bit in enumerate(mask[node])))
             if summed is not None:
                 for bank in range(self.nodes.banks):
@@ -108,7 +108,7 @@ class Bench:
                         ctx.set(getattr(dut, f"sum{bank}_{axis}"), int(sums[bank, summed, k]))
             assert ctx.get(dut.update) == (0 if done is None else (1 << len(NODE_WORDS)) - 1)
             if done is not None:
-                assert ctx.get(dut.update_node) == done
+                assert ctx.get(dut.update_row) == done
                 for word in NODE_WORDS:
                     expected = self.nodes.x if word[0] == "x" else self.nodes.vectors["v"]
                     assert ctx.get(getattr(dut, f"update_{word}")) == expected[done, AXES.index(word[2])], word
