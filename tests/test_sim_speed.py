@@ -75,14 +75,22 @@ def test_threads_compute_what_one_does_and_the_same_every_time(name, threads):
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 200])
-def test_threads_share_everything_once(threads):
-    scene = meshes.scene("9x9")
-    edges, nodes = arrays.shares(arrays.arrays(scene, np.float32), threads)
-    for bounds, count in ((edges, 208), (nodes, 81)):
-        assert len(bounds) == threads + 1 and bounds[0] == 0 and bounds[-1] == count
-        assert (bounds[1:] >= bounds[:-1]).all()
-    if threads < 10:
-        assert np.diff(edges.astype(int)).max() <= 208 / threads + 4  # edges of one node stay together
+@pytest.mark.parametrize("count", [15, 81, 208])
+def test_threads_share_everything_once(count, threads):
+    bounds = arrays.shares(count, threads)
+    assert len(bounds) == threads + 1 and bounds[0] == 0 and bounds[-1] == count
+    shares = np.diff(bounds.astype(int))
+    assert (shares >= 0).all() and (np.abs(shares - count / threads) < arrays.TOGETHER).all()
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int64])
+def test_no_two_threads_write_to_one_cache_line(dtype):
+    values = np.arange(51).reshape(3, 17)
+    rows = arrays.rows(values, dtype)
+    assert rows.dtype == dtype and rows.flags.c_contiguous and rows.shape == (3, 32)
+    assert not [row for row in rows if row.ctypes.data % arrays.LINE]
+    assert arrays.TOGETHER * rows.itemsize % arrays.LINE == 0
+    np.testing.assert_array_equal(rows, np.pad(values, ((0, 0), (0, 15))))
 
 
 @pytest.mark.parametrize("change, message", [
@@ -112,10 +120,11 @@ def test_software(monkeypatch):
     figures = timing.software(meshes.scene("9x9"), 100, told.append)
     assert told == list(figures) == list(timing.SOFTWARE)
     for program in figures.values():
-        assert list(program) == ["threads", "steps", "step_us", "p999_us", "max_us", "clock_us"]
+        assert list(program) == ["threads", "steps", "step_us", "p999_us", "max_us", "clock_us", "running"]
         assert program["steps"] == 100 and program["threads"] >= 1
         assert 0.1 < program["step_us"] <= program["p999_us"] <= program["max_us"]
         assert 0 <= program["clock_us"] < program["step_us"]
+        assert 0 < program["running"] <= 1
 
 
 def test_software_is_put_back_at_its_start(monkeypatch):

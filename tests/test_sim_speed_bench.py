@@ -15,7 +15,8 @@ KEYS = ["mesh", "lanes", "updates", "nodes", "edges", "clock_mhz", "cycles_per_s
 
 def software(scene, steps, progress):
     """Stands in for `sim.speed.timing.software`."""
-    times = {"threads": 2, "steps": steps, "step_us": 20.0, "p999_us": 30.0, "max_us": 4000.0, "clock_us": 0.02}
+    times = {"threads": 2, "steps": steps, "step_us": 20.0, "p999_us": 30.0, "max_us": 4000.0, "clock_us": 0.02,
+             "running": 0.99}
     for name in timing.SOFTWARE:
         progress(name)
     return dict.fromkeys(timing.SOFTWARE, times)
@@ -52,7 +53,7 @@ def test_writes_entries_and_shows_two_tables(quick, tmp_path, capsys):
     assert max(map(len, lines)) <= 120
     assert lines[5].split() == ["9x9", "81", "208", "1", "1", "1082", "0.769", "10.82", "76.9", *["20.0", "1.85"] * 3]
     assert ["5x5x5", *["20.0", "30.0", "4000.0"] * 3] in [line.split() for line in lines]
-    assert "steps: 7," in said
+    assert "steps: 7," in said and "warning" not in said
 
 
 def test_all_meshes_fit_on_a_screen(quick, tmp_path, capsys):
@@ -60,6 +61,18 @@ def test_all_meshes_fit_on_a_screen(quick, tmp_path, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) < 40 and max(map(len, lines)) <= 120
     assert list(dict.fromkeys(line.split()[0] for line in lines[5:23])) == list(meshes.MESHES)
+
+
+def test_a_machine_that_others_use_is_noticed(quick, tmp_path, capsys, monkeypatch):
+    def busy(*arguments):
+        figures = software(*arguments)
+        figures["numba_all_threads"] = {**figures["numba_all_threads"], "running": 0.6}
+        return figures
+
+    monkeypatch.setattr(timing, "software", busy)
+    assert main(["bench", "--meshes", "9x9", "--out", str(tmp_path / "bench.json")]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == (
+        "warning: other programs used the machine, the software's times are too long: Numba-all had 60% of its cores")
 
 
 def test_progress_on_a_terminal(quick, tmp_path, capsys, monkeypatch):

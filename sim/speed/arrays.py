@@ -13,9 +13,18 @@ RATIO, BASE, TOTAL, RHO_K, RHO_K_L, RHO_C1, SLIP, LOW, HIGH = range(9)
 """Rows of ``Arrays.edge``: the ratio at the stage, before the step, the sum of its changes so far; with
 rho = c2 / (c1 + c2), rho k, rho k L and rho c1, which give the pull; 1 / c2; a_min and a_max."""
 
+LINE = 64
+"""Bytes of a cache line. One that two threads write to goes to and fro between their cores, at 0.1 us a time."""
+
+TOGETHER = 16
+"""Edges or nodes that one thread works on: as many numbers fill a cache line, or two."""
+
 
 class Arrays(NamedTuple):
-    """N nodes, E edges in ascending order (i, then j), in one floating-point type; indices are unsigned."""
+    """N nodes, E edges in ascending order (i, then j), in one floating-point type; indices are unsigned.
+
+    Rows of numbers are longer than that, so that every one begins with a cache line.
+    """
 
     i: np.ndarray  # (E,)
     j: np.ndarray  # (E,)
@@ -53,26 +62,41 @@ def arrays(scene: Scene, dtype) -> Arrays:
     return Arrays(
         *(index.astype(np.uint64) for index in (
             i, j, np.searchsorted(i, np.arange(nodes + 1)), np.searchsorted(j[where], np.arange(nodes + 1)), where)),
-        *(values.astype(dtype) for values in (
-            np.array(edge), np.zeros((2 * dim, edges)), np.zeros((dim, edges)),
-            node, node, np.zeros_like(node), np.zeros((dim, nodes)), np.zeros(nodes), np.zeros((dim, nodes)),
-            scene.dt * np.array([1, 1, 2]) / 2, scene.dt * np.array([1, 2, 2, 1]) / 6)),
+        *(rows(values, dtype) for values in (
+            edge, np.zeros((2 * dim, edges)), np.zeros((dim, edges)),
+            node, node, np.zeros((2 * dim, nodes)), np.zeros((dim, nodes)))),
+        mobility=rows(np.zeros((1, nodes)), dtype)[0],
+        drift=rows(np.zeros((dim, nodes)), dtype),
+        time=(scene.dt * np.array([1, 1, 2]) / 2).astype(dtype),
+        weight=(scene.dt * np.array([1, 2, 2, 1]) / 6).astype(dtype),
         axes=tuple(range(dim)))
+
+
+def rows(values, dtype) -> np.ndarray:
+    """A copy of (r, n) values whose rows begin with a cache line each; what is left of a row's last one is 0."""
+    count, width = np.shape(values)
+    width = -(-width // TOGETHER) * TOGETHER
+    size = count * width * np.dtype(dtype).itemsize
+    room = np.zeros(size + LINE, np.uint8)
+    begin = -room.ctypes.data % LINE
+    result = room[begin : begin + size].view(dtype).reshape(count, width)
+    result[:, : np.shape(values)[1]] = values
+    return result
 
 
 def begin(arrays: Arrays, scene: Scene, phase: Phase) -> None:
     """Put the object under a phase's constraints and loads, as `golden.model.Model.begin` does."""
-    dim, mass = scene.dim, scene.mass
-    arrays.mobility[:] = np.where(phase.held, 0, 1 / mass)
-    arrays.drift[:] = np.where(phase.held, 0, (phase.load / mass[:, None] + scene.gravity).T)
+    dim, mass, nodes = scene.dim, scene.mass, len(scene.mass)
+    arrays.mobility[:nodes] = np.where(phase.held, 0, 1 / mass)
+    arrays.drift[:, :nodes] = np.where(phase.held, 0, (phase.load / mass[:, None] + scene.gravity).T)
+    fixed, driven = np.flatnonzero(phase.fixed), np.flatnonzero(phase.driven)
     for state in (arrays.node, arrays.base):
-        state[dim:, phase.fixed] = 0
-        state[dim:, phase.driven] = phase.velocity[phase.driven].T
+        state[dim:, fixed] = 0
+        state[dim:, driven] = phase.velocity[phase.driven].T
 
 
-def shares(arrays: Arrays, threads: int) -> tuple[np.ndarray, np.ndarray]:
-    """(threads + 1,) bounds of the edges and of the nodes that each thread works on: edges go with their node i."""
-    edges = len(arrays.i)
-    nodes = np.searchsorted(arrays.first, np.arange(threads + 1) * edges / threads).astype(np.uint64)
-    nodes[-1] = len(arrays.mobility)
-    return arrays.first[nodes], nodes
+def shares(count: int, threads: int) -> np.ndarray:
+    """(threads + 1,) bounds of the edges or nodes, of so many, that each thread works on."""
+    bounds = np.arange(threads + 1) * count // (threads * TOGETHER) * TOGETHER
+    bounds[-1] = count
+    return bounds.astype(np.uint64)

@@ -33,7 +33,8 @@ class CompiledModel:
             raise InputError(f"threads must be a whole number of at least 1, not {threads!r}")
         self._scene, self._threads = scene, threads
         self._arrays = arrays.arrays(scene, dtype)
-        self._shares = arrays.shares(self._arrays, threads)
+        counts = len(scene.mesh.edges), len(scene.mesh.points)
+        self._shares = [arrays.shares(count, threads) for count in counts]
         self.begin(scene.phases[0])
 
     def begin(self, phase: Phase) -> None:
@@ -42,7 +43,7 @@ class CompiledModel:
 
     def step(self, steps: int = 1) -> np.ndarray:
         """Run so many steps and give the time that each of them took (steps,), in ns."""
-        counter, stamps = np.zeros(1, np.int64), np.zeros((steps + 1, 2), np.int64)
+        counter, stamps = arrays.rows([[0]], np.int64)[0], np.zeros((steps + 1, 2), np.int64)
 
         def part(thread):
             run(self._arrays, *self._shares, thread, self._threads, counter, steps, stamps)
@@ -59,14 +60,14 @@ class CompiledModel:
     @property
     def x(self) -> np.ndarray:
         """(N, dim) m."""
-        return self._arrays.node[: self._scene.dim].T
+        return self._arrays.node[: self._scene.dim, : len(self._scene.mass)].T
 
     @property
     def v(self) -> np.ndarray:
         """(N, dim) m/s."""
-        return self._arrays.node[self._scene.dim :].T
+        return self._arrays.node[self._scene.dim :, : len(self._scene.mass)].T
 
     @property
     def a(self) -> np.ndarray:
         """(E,)"""
-        return self._arrays.edge[arrays.RATIO]
+        return self._arrays.edge[arrays.RATIO, : len(self._arrays.i)]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sim.speed.timing import SOFTWARE
 
+IDLE = 0.95  # of the time a program must have run, or its figures say little about it
 SHORT = {"numpy": "NumPy", "numba_1_thread": "Numba-1", "numba_all_threads": "Numba-all"}
 
 
@@ -52,6 +53,14 @@ def print_tables(entries: list[dict]) -> None:
     for name, program in software.items():
         print(f"{SHORT[name]}: {SOFTWARE[name]}; threads: {program['threads']}, steps: {program['steps']}, "
               f"looking at the clock: {program['clock_us']:.2f} us")
+    if busy := disturbed(entries):
+        print(f"\nwarning: other programs used the machine, the software's times are too long: {', '.join(busy)}")
+
+
+def disturbed(entries: list[dict]) -> list[str]:
+    """Programs that did not have the cores to themselves, with the part of the time that they had."""
+    least = {name: min(e["software"][name]["running"] for e in entries) for name in entries[0]["software"]}
+    return [f"{SHORT[name]} had {part:.0%} of its cores" for name, part in least.items() if part < IDLE]
 
 
 def _print(rows: list[list[str]]) -> None:

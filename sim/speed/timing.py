@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from time import perf_counter_ns
+from time import perf_counter, perf_counter_ns, process_time
 
 import numpy as np
 
@@ -38,24 +38,27 @@ def software(scene: Scene, steps: int = LAP, progress: Callable[[str], object] |
     -------
     dict
         For each name of `SOFTWARE`: ``threads``, ``steps``, and in us ``step_us`` (median), ``p999_us`` (99.9th
-        percentile), ``max_us``, ``clock_us`` (what looking at the clock takes of each, median).
+        percentile), ``max_us``, ``clock_us`` (what looking at the clock takes of each, median); ``running``, the
+        part of the time in which its threads had a core each: less than 1 when others use the machine.
     """
     threads = {"numpy": 1, "numba_1_thread": 1, "numba_all_threads": cores()}
     figures = {}
     for name, count in threads.items():
         if progress:
             progress(name)
-        taken = []
+        taken, cpu, wall = [], 0.0, 0.0
         for done in range(0, steps, LAP):
             timed = _numpy(scene) if name == "numpy" else CompiledModel(scene, threads=count).step
             timed(WARM)
+            cpu, wall = cpu - process_time(), wall - perf_counter()
             taken.append(timed(min(LAP, steps - done)))
+            cpu, wall = cpu + process_time(), wall + perf_counter()
         times = np.concatenate(taken) / 1000
         clock = _python_clock() if name == "numpy" else _compiled_clock()
         figures[name] = {
             "threads": count, "steps": steps, "step_us": float(np.median(times)),
             "p999_us": float(np.percentile(times, 99.9)), "max_us": float(times.max()),
-            "clock_us": float(np.median(clock)) / 1000}
+            "clock_us": float(np.median(clock)) / 1000, "running": min(1.0, cpu / (wall * count))}
     return figures
 
 
