@@ -8,6 +8,10 @@ from .blocks.memory import READ_LATENCY
 from .blocks.queue import Queue
 
 
+LATENCY = READ_LATENCY + 1
+"""Cycles from the end of the flush to the first entry."""
+
+
 class Fetch(wiring.Component):
     """Entries 0 to ``count - 1`` of a memory over and over, one a cycle, each with its place in the list.
 

@@ -8,9 +8,11 @@ from amaranth.lib.wiring import In, Out
 
 from golden import records
 from golden.datapath import node_graph
+from golden.formats import Formats
 from golden.graph import AXES
 
 from .blocks.memory import READ_LATENCY, BlockRam
+from .cost import Cost
 from .delay import DelayLines
 from .edge import fault_names
 from .lane import NODE_WORDS
@@ -20,6 +22,35 @@ from .pipe import Pipe, Schedule
 
 RESULTS = {"x_base": "x_base_next", "v_base": "v_base_next", "v": "v", "x_total": "x_total", "v_total": "v_total"}
 """Where a node's memories get their next words from."""
+
+
+class NodeDatapath:
+    """`golden.datapath.node_graph` with its schedule.
+
+    Only the sums of forces come with the node, two for each lane; a node's own words are read when they are needed.
+    """
+
+    def __init__(self, formats: Formats, lanes: int, cost: Cost):
+        self.formats, self.cost, self.banks = formats, cost, 2 * lanes
+
+    @cached_property
+    def graph(self):
+        return node_graph(self.formats, self.banks)
+
+    @cached_property
+    def schedule(self):
+        late = {name for name in self.graph.inputs if not name.startswith(("pull", "velocity_shift"))}
+        return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"})
+
+    @cached_property
+    def faults(self) -> list[str]:
+        """Names of all faults that the datapath can report, sorted."""
+        return fault_names(self.graph)
+
+    @property
+    def latency(self) -> int:
+        """Cycles from the issue of a node to its new state."""
+        return READ_LATENCY + self.schedule.latency
 
 
 class NodeUpdater(wiring.Component):
@@ -48,8 +79,9 @@ class NodeUpdater(wiring.Component):
     def __init__(self, parameters: Parameters):
         self.parameters = parameters
         fmt = parameters.formats
-        self.banks = 2 * parameters.lanes
-        self.faults = fault_names(self.graph)
+        self.datapath = datapath = NodeDatapath(fmt, parameters.lanes, parameters.cost)
+        self.banks, self.schedule = datapath.banks, datapath.schedule
+        self.faults, self.latency = datapath.faults, datapath.latency
         self._mass = records.inverse_mass(fmt)
         update = {"x": fmt.position, "v": fmt.velocity}
         super().__init__(
@@ -75,20 +107,6 @@ class NodeUpdater(wiring.Component):
                 "host_mass": Out(fmt.state),
             }
         )
-
-    @cached_property
-    def graph(self):
-        return node_graph(self.parameters.formats, self.banks)
-
-    @cached_property
-    def schedule(self):
-        """Only the sums of forces come with the node."""
-        late = {name for name in self.graph.inputs if not name.startswith(("pull", "velocity_shift"))}
-        return Schedule(self.graph, self.parameters.cost, late=late, static={"velocity_shift"})
-
-    @property
-    def latency(self) -> int:
-        return READ_LATENCY + self.schedule.latency
 
     def elaborate(self, platform):
         m = Module()

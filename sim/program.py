@@ -63,6 +63,20 @@ class Program:
         ]
         yield from self._column(Region.NODE, "inverse_mass", packed)
 
+    def need(self) -> np.ndarray:
+        """(node rows,) how many rows of edges have to be summed before a row of nodes may be updated."""
+        need = np.zeros(-(-self.image.nodes // self.parameters.updates), np.int64)
+        rows = np.arange(len(self.image.edges)) // self.parameters.lanes
+        np.maximum.at(need, self.image.edges // self.parameters.updates, rows[:, None] + 1)
+        return need
+
+    def highest(self) -> np.ndarray:
+        """(rows,) the last row of nodes with an end of one of the row's edges."""
+        highest = np.zeros(self.rows, np.int64)
+        rows = np.arange(len(self.image.edges)) // self.parameters.lanes
+        np.maximum.at(highest, rows, self.image.edges.max(axis=1) // self.parameters.updates)
+        return highest
+
     def edge_addresses(self, word: str) -> list[int]:
         return [self._address(Region.EDGE, word, *self._place(e)) for e in range(len(self.image.edges))]
 
@@ -114,10 +128,9 @@ class Program:
 
     def _entries(self):
         """Edge and node entries: see `golden.records`."""
-        image, lanes = self.image, self.parameters.lanes
-        updates = self.parameters.updates
-        places = -(-image.nodes // updates) * updates
-        need, mask = np.zeros(places, int), np.zeros(places, int)
+        image, lanes, updates = self.image, self.parameters.lanes, self.parameters.updates
+        need = np.repeat(self.need(), updates)
+        mask = np.zeros(len(need), int)
         for place in range(self.rows * lanes):
             row, lane = self._place(place)
             fields = dict.fromkeys(records.edge_entry(), 0)
@@ -127,10 +140,8 @@ class Program:
                     bank = 1 << half * lanes + lane
                     fields |= {end: n, f"{end}_first": int(not mask[n] & bank)}
                     mask[n] |= bank
-                    need[n] = row + 1
             yield self._address(Region.EDGE, "entry", row, lane), records.pack(records.edge_entry(), fields)
-        need = np.repeat(need.reshape(-1, updates).max(axis=1), updates)
-        for n in range(places):
+        for n in range(len(need)):
             fields = {"need": need[n], "mask": mask[n], "valid": int(n < image.nodes)}
             entry = records.pack(records.node_entry(), fields)
             yield self._address(Region.NODE, "entry", n), entry

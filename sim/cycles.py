@@ -1,0 +1,88 @@
+"""The cycles of a run, exactly as the circuit counts them, from the lists alone: nothing has to be built.
+
+An event is a cycle counted from the first of the run. Rows of edges and rows of nodes go in the order of their lists,
+one a cycle, so that each of them is at its place in the list plus the longest delay of those before it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from golden.image import Image
+from golden.rk4 import RK4
+from hw.edge import EdgeDatapath
+from hw.fetch import LATENCY as FETCH_LATENCY
+from hw.lane import latency
+from hw.parameters import Parameters
+from hw.updater import NodeDatapath
+
+from .program import Program
+
+UNTIL_SETTLED = 50
+"""Steps after which every list that ends well has found its rhythm."""
+
+
+@dataclass(frozen=True)
+class Latencies:
+    """Cycles from the issue of an edge to the sums with its force, and from that of a node to the counter of updates."""
+
+    edge: int
+    node: int
+
+    @classmethod
+    def of(cls, p: Parameters) -> "Latencies":
+        edge, node = EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
+        return cls(latency(edge), node.latency + 1)
+
+
+class Wavefront:
+    """An object in a circuit: when its rows and nodes go.
+
+    Raises
+    ------
+    golden.errors.InputError
+        If the circuit is too small for the object (`sim.program.Program`).
+    """
+
+    def __init__(self, image: Image, parameters: Parameters, latencies: Latencies | None = None):
+        program = Program(image, parameters)
+        self.latencies = latencies or Latencies.of(parameters)
+        self.rows, self.edges, self._lanes = program.rows, len(image.edges), parameters.lanes
+        self._highest, self._need = program.highest(), program.need()
+        self._need[-1] = self.rows  # the last nodes close the stage
+
+    def run(self, steps: int) -> np.ndarray:
+        """(steps,) the first cycle after each step of a run; the last is what the circuit's counter says."""
+        updated = np.full(len(self._need), 0)
+        last_row, last_node, ends = FETCH_LATENCY - 1, FETCH_LATENCY - 1, []
+        for stage in range(steps * RK4.stages):
+            rows = in_turn(updated[self._highest] if stage else np.zeros(self.rows, np.int64), last_row + 1)
+            summed = np.concatenate([[0], rows + self.latencies.edge])
+            nodes = in_turn(summed[self._need], last_node + 1)
+            updated = nodes + self.latencies.node
+            last_row, last_node = rows[-1], nodes[-1]
+            ends += [updated[-1]] if stage % RK4.stages == RK4.stages - 1 else []
+        return np.array(ends)
+
+    def per_step(self) -> int:
+        """Cycles of a step once running: a run of n + 1 steps takes so many more than one of n.
+
+        Raises
+        ------
+        ValueError
+            If steps take turns in being short and long.
+        """
+        lengths = np.diff(self.run(UNTIL_SETTLED))[UNTIL_SETTLED // 2 :]
+        if (lengths != lengths[0]).any():
+            raise ValueError(f"steps must take the same number of cycles, not {sorted(set(lengths.tolist()))}")
+        return int(lengths[0])
+
+    def occupancy(self) -> float:
+        """Edges issued per lane and cycle, once running."""
+        return RK4.stages * self.edges / (self._lanes * self.per_step())
+
+
+def in_turn(ready: np.ndarray, first: int) -> np.ndarray:
+    """When entries of a list go that are ready at these times, one a cycle, the first not before ``first``."""
+    turns = np.arange(len(ready))
+    return turns + np.maximum.accumulate(np.maximum(ready - turns, first))
