@@ -7,7 +7,6 @@ from amaranth.lib.wiring import In, Out
 from .blocks.memory import READ_LATENCY
 from .blocks.queue import Queue
 
-
 LATENCY = READ_LATENCY + 1
 """Cycles from the end of the flush to the first entry."""
 

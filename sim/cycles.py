@@ -24,7 +24,7 @@ UNTIL_SETTLED = 50
 
 @dataclass(frozen=True)
 class Latencies:
-    """Cycles from the issue of an edge to the sums with its force, and from that of a node to the counter of updates."""
+    """Cycles from the issue of an edge to the sums with its force, from that of a node to the counter of updates."""
 
     edge: int
     node: int
