@@ -34,6 +34,7 @@ class Limits(Struct, forbid_unknown_fields=True):
 
 class Circuit(Struct, forbid_unknown_fields=True):
     lanes: int
+    updates: int
     nodes: int
     edges: int
     materials: int

@@ -9,6 +9,7 @@ import pytest
 from golden.errors import InputError
 from hw import boards
 from hw.parameters import Parameters
+from hw.timing.result import Result
 
 TEXT = (boards.FOLDER / "ulx3s-85f.toml").read_text()
 DOCUMENT = tomllib.loads(TEXT)
@@ -40,6 +41,11 @@ def test_a_board_has_its_circuit_and_takes_another():
     assert board.parameters(lanes=None) == board.parameters()
     chosen = board.parameters(lanes=2, tables=1)
     assert (chosen.lanes, chosen.tables, chosen.nodes) == (2, 1, board.circuit.nodes)
+
+
+def test_a_circuit_has_a_size_of_each_kind():
+    assert tuple(boards.Circuit.__struct_fields__) == tuple(Parameters.RANGES)
+    assert set(Parameters.RANGES) <= set(Result.__struct_fields__)
 
 
 def test_an_unknown_board_lists_those_known():

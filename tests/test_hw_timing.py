@@ -18,7 +18,7 @@ from hw.timing import command, flow, report, result, tools
 from hw.timing.frame import FRAME, Frame
 from hw.timing.report import Sizes, Step
 from hw.timing.result import Result
-from hw.verilog import convert
+from hw.verilog import TOP, convert
 
 STATISTICS = {
     "modules": {"\\rheogate": {}, f"\\{FRAME}": {"num_cells_by_type": {"LUT4": 39, "TRELLIS_FF": 106, "rheogate": 1}}},
@@ -128,7 +128,8 @@ def test_a_circuit_that_does_not_fit(tools_aside):
 
 def test_the_table(tools_aside):
     lines = result.table(measured(), boards.load("ulx3s-85f")).splitlines()
-    assert lines[0] == ("ulx3s-85f (ecp5 85k, speed grade 6): 4 lanes, 512 nodes, 4096 edges, 16 materials, 4 tables")
+    assert lines[0] == ("ulx3s-85f (85k, speed grade 6): 4 lanes, 1 update, 512 nodes, 4096 edges, 16 materials, "
+                        "4 tables")
     assert lines[2] == "Fmax    101.5 MHz at least, 120.0 MHz median of 120.0, 133.0, 101.5"
     assert lines[6:9] == ["              takes      of",
                           "LUT            1700   83640    2%",
@@ -143,7 +144,7 @@ def test_what_is_kept_is_published(tools_aside, tmp_path):
     header, rule, small, large = result.published(tmp_path).splitlines()
     assert header.count("|") == rule.count("|") == small.count("|") == large.count("|")
     assert small.startswith("| ulx3s-25f | not timed yet |")
-    assert large == ("| ulx3s-85f | 4 | 512 | 4096 | 1700 (2%) | 2000 (2%) | 23 (15%) | 13 (6%) | 101.5 MHz | "
+    assert large == ("| ulx3s-85f | 4 | 1 | 512 | 4096 | 1700 (2%) | 2000 (2%) | 23 (15%) | 13 (6%) | 101.5 MHz | "
                      "120.0 MHz | 170.0 MHz | 120.0 MHz |")
 
 
@@ -237,6 +238,33 @@ def folder():
     path.mkdir(parents=True)
     yield path
     shutil.rmtree(path)
+
+
+TINY = f"""
+module {TOP}(input clk, input [17:0] a, b, output reg [35:0] p);
+    reg [17:0] a_in, b_in;
+    always @(posedge clk) begin a_in <= a; b_in <= b; p <= a_in * b_in; end
+endmodule
+module {FRAME}(input clk, serial_in, output serial_out);
+    reg [35:0] feed, gathered;
+    wire [35:0] p;
+    assign serial_out = gathered[35];
+    always @(posedge clk) begin feed <= {{feed[34:0], serial_in}}; gathered <= {{gathered[34:0], feed[35]}} ^ p; end
+    {TOP} core(.clk(clk), .a(feed[17:0]), .b(feed[35:18]), .p(p));
+endmodule
+"""
+
+
+@pytest.mark.campaign
+def test_the_tools_and_their_reports(folder, monkeypatch):
+    monkeypatch.setattr(flow, "framed", lambda parameters: TINY)
+    board, doing = boards.load("ulx3s-85f"), []
+    found = flow.measure("tiny", board, board.parameters(), [1, 2], folder, doing.append)
+    assert doing == ["synthesis", "seed 1", "seed 2"]
+    assert (found.ff, found.multipliers, found.block_rams, found.frame.ff) == (72, 1, 0, 72)
+    assert 50 < found.fmax_min <= found.fmax_median < 300 and len(set(found.fmax_mhz)) == 2
+    assert [step.name for step in found.critical_path] in (["a_in", "p"], ["b_in", "p"])
+    assert abs(1000 / found.fmax_min - sum(step.ns for step in found.critical_path)) < 0.1
 
 
 @pytest.mark.campaign

@@ -21,6 +21,7 @@ PARAMETERS = tuple(Parameters.RANGES)
 class Result(Struct, forbid_unknown_fields=True, kw_only=True):
     board: str
     lanes: int
+    updates: int
     nodes: int
     edges: int
     materials: int
@@ -61,11 +62,12 @@ def read(path: Path, kind: type):
 
 def table(result: Result, board: Board) -> str:
     """What a terminal shows of a result."""
-    sizes = ", ".join(f"{getattr(result, name)} {name}" for name in PARAMETERS)
+    counts = {name: getattr(result, name) for name in PARAMETERS}
+    sizes = ", ".join(f"{count} {name if count > 1 else name.removesuffix('s')}" for name, count in counts.items())
     runs = ", ".join(f"{mhz:.1f}" for mhz in result.fmax_mhz)
     limits = f"multiplier {result.limits_mhz.multiplier:g} MHz, block RAM {result.limits_mhz.block_ram:g} MHz"
     lines = [
-        f"{result.board} ({board.family} {board.device}, speed grade {result.grade}): {sizes}",
+        f"{result.board} ({board.device}, speed grade {result.grade}): {sizes}",
         "",
         f"Fmax    {result.fmax_min:.1f} MHz at least, {result.fmax_median:.1f} MHz median of {runs}",
         f"limits  {limits}: not seen by place and route",
@@ -92,7 +94,8 @@ def shares(sizes: Sizes | Result, board: Board) -> list[tuple[str, int, int]]:
     ]
 
 
-HEAD = "| board | lanes | nodes | edges | LUT | FF | multipliers | block RAMs | Fmax, lowest | median | limit | clock |"
+HEAD = "| board | lanes | updates | nodes | edges " \
+       "| LUT | FF | multipliers | block RAMs | Fmax, lowest | median | limit | clock |"
 
 
 def published(folder: Path = KEPT) -> str:
@@ -110,7 +113,7 @@ def _cells(result: Result, board: Board) -> list[str]:
     limit = min(result.limits_mhz.multiplier, result.limits_mhz.block_ram)
     clocks = result.fmax_min, result.fmax_median, limit, result.clock_mhz
     return [
-        *(str(getattr(result, name)) for name in ("lanes", "nodes", "edges")),
+        *(str(getattr(result, name)) for name in ("lanes", "updates", "nodes", "edges")),
         *(f"{used} ({used / available:.0%})" for _, used, available in shares(result, board)),
         *(f"{mhz:.1f} MHz" for mhz in clocks),
     ]
