@@ -1,5 +1,7 @@
 """The coprocessor: lanes, node updaters, sequencer and host port. Connections only."""
 
+from types import SimpleNamespace
+
 from amaranth.hdl import Array, Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
@@ -12,6 +14,7 @@ from .blocks.memory import READ_LATENCY, BlockRam
 from .delay import DelayLines
 from .edge import EdgeDatapath
 from .fetch import Fetch
+from .front import Front
 from .host import HostPort, host_signature
 from .lane import NEXT, NODE_WORDS, Lane, latency
 from .parameters import Parameters
@@ -96,6 +99,26 @@ class Core(wiring.Component):
         ]
         return ram
 
+    def _front(self, name, fetch):
+        """The list's entry in front, and the one behind it: ``word``, ``last``, ``index`` of each."""
+        m, sequencer, behind = self._m, self._sequencer, Cat(fetch.word, fetch.last, fetch.index)
+        m.submodules[f"{name}_front"] = front = Front(width=len(behind))
+        m.d.comb += [
+            fetch.flush.eq(self._idle),
+            front.flush.eq(self._idle),
+            front.behind.eq(behind),
+            front.behind_valid.eq(fetch.valid),
+            front.behind_ready.eq(getattr(sequencer, f"{name}_behind_ready")),
+            fetch.take.eq(front.behind_take),
+            front.ready.eq(getattr(sequencer, f"{name}_ready")),
+            front.take.eq(getattr(sequencer, f"{name}_take")),
+            getattr(sequencer, f"{name}_valid").eq(front.valid),
+            getattr(sequencer, f"{name}_may").eq(front.may),
+        ]
+        words = len(fetch.word)
+        entry = SimpleNamespace(word=front.entry[:words], last=front.entry[words], index=front.entry[words + 1 :])
+        return entry, fetch
+
     def _rows(self):
         """A row is an edge for every lane."""
         m, p, host, sequencer = self._m, self.parameters, self._host, self._sequencer
@@ -108,31 +131,31 @@ class Core(wiring.Component):
             m.d.comb += ram.write.eq(self._strobe(Region.EDGE, 0, number))
             words.append(ram.data)
         self._edge_entries = words
-        m.d.comb += [
-            fetch.flush.eq(self._idle),
-            fetch.count.eq(host.rows),
-            fetch.data.eq(Cat(*words)),
-            fetch.take.eq(sequencer.row_take),
-        ]
+        m.d.comb += [fetch.count.eq(host.rows), fetch.data.eq(Cat(*words))]
+        front, behind = self._front("row", fetch)
 
-        updated, self._valid = [], []
-        for number, lane in enumerate(self._lanes):
-            entry = unpack(record, fetch.word[number * width : (number + 1) * width])
-            ends = [p.node_place(entry[end])[0] < sequencer.updated for end in "ij"]
-            updated.append(~entry["valid"] | ends[0] & ends[1])
-            self._valid.append(entry["valid"])
+        def entries(word):
+            return [unpack(record, word[n * width : (n + 1) * width]) for n in range(p.lanes)]
+
+        def updated(word):
+            """Whether all nodes of a row are."""
+            ends = [(entry["valid"], p.node_place(entry[end])[0]) for entry in entries(word) for end in "ij"]
+            return Cat(~valid | (row < sequencer.updated) for valid, row in ends).all()
+
+        self._valid = [entry["valid"] for entry in entries(front.word)]
+        for lane, entry in zip(self._lanes, entries(front.word), strict=True):
             m.d.comb += [
                 lane.valid.eq(sequencer.row_take & entry["valid"]),
-                lane.row.eq(fetch.index),
+                lane.row.eq(front.index),
                 *(getattr(lane, name).eq(entry[name]) for name in ("i", "j", "i_first", "j_first", "material")),
                 *(bit.eq(value) for bit, value in stage_bits(lane, sequencer.row_stage)),
                 lane.velocity_shift.eq(host.velocity_shift),
             ]
         m.d.comb += [
             sequencer.rows.eq(host.rows),
-            sequencer.row_valid.eq(fetch.valid),
-            sequencer.row_last.eq(fetch.last),
-            sequencer.row_nodes.eq(Cat(*updated).all()),
+            sequencer.row_last.eq(front.last),
+            sequencer.row_nodes.eq(updated(front.word)),
+            sequencer.row_behind_nodes.eq(updated(behind.word)),
             sequencer.row_summed.eq(self._lines.later(sequencer.row_take, latency(self.datapath) - 1, reset=True)),
         ]
 
@@ -144,28 +167,31 @@ class Core(wiring.Component):
         m.submodules.node_fetch = fetch = Fetch(index_bits=p.node_row_bits, width=width * p.updates)
         row, column = p.node_place(host.index)
         self._node_entries = []
-        for number, updater in enumerate(self.updaters):
+        for number in range(p.updates):
             ram = self._entries(f"node_entries{number}", record, p.node_rows, fetch.address, row)
             word = Map(p).words(Region.NODE).index("entry")
             m.d.comb += ram.write.eq(self._strobe(Region.NODE, word) & (column == number))
             self._node_entries.append(ram.data)
-            entry = unpack(record, fetch.word[number * width : (number + 1) * width])
+        m.d.comb += [
+            fetch.count.eq((host.nodes + (p.updates - 1)) >> p.updates.bit_length() - 1),
+            fetch.data.eq(Cat(*self._node_entries)),
+        ]
+        front, behind = self._front("node", fetch)
+        for number, updater in enumerate(self.updaters):
+            entry = unpack(record, front.word[number * width : (number + 1) * width])
             m.d.comb += [
                 updater.valid.eq(sequencer.node_take & entry["valid"]),
-                updater.row.eq(fetch.index),
+                updater.row.eq(front.index),
                 updater.mask.eq(entry["mask"]),
                 updater.velocity_shift.eq(host.velocity_shift),
                 *(bit.eq(value) for bit, value in stage_bits(updater, sequencer.node_stage)),
             ]
         m.d.comb += [
-            fetch.flush.eq(self._idle),
-            fetch.count.eq((host.nodes + (p.updates - 1)) >> p.updates.bit_length() - 1),
-            fetch.data.eq(Cat(*self._node_entries)),
-            fetch.take.eq(sequencer.node_take),
             sequencer.nodes.eq(fetch.count),
-            sequencer.node_valid.eq(fetch.valid),
-            sequencer.node_last.eq(fetch.last),
-            sequencer.node_need.eq(unpack(record, fetch.word)["need"]),
+            sequencer.node_last.eq(front.last),
+            sequencer.node_need.eq(unpack(record, front.word)["need"]),
+            sequencer.node_behind_last.eq(behind.last),
+            sequencer.node_behind_need.eq(unpack(record, behind.word)["need"]),
             sequencer.node_updated.eq(self._lines.later(sequencer.node_take, self.updater.latency, reset=True)),
         ]
         for lane in self._lanes:

@@ -1,15 +1,34 @@
 """The latencies of a circuit, for the documentation and the manifest."""
 
+from dataclasses import dataclass
+
 from .blocks.memory import READ_LATENCY
 from .core import Core
+from .edge import EdgeDatapath
+from .front import LATENCY as FRONT_LATENCY
 from .host import LATENCY as HOST_LATENCY
 from .lane import NEXT
 from .lane import latency as sums_latency
+from .parameters import Parameters
+from .updater import NodeDatapath
+
+
+@dataclass(frozen=True)
+class Latencies:
+    """Cycles from the issue of an edge to the nodes that may go then, and from that of a node to the edges."""
+
+    edge: int
+    node: int
+
+    @classmethod
+    def of(cls, p: Parameters) -> "Latencies":
+        edge, node = EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
+        return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + 1 + FRONT_LATENCY)
 
 
 def latencies(core: Core) -> list[tuple[str, str, int]]:
     """(of what, from where to where, cycles), each read from the component that has it."""
-    edge, node = core.datapath, core.updater
+    edge, node, loop = core.datapath, core.updater, Latencies.of(core.parameters)
     written = READ_LATENCY + max(edge.ready(name) for name in NEXT.values())
     return [
         ("block RAM", "address to word", READ_LATENCY),
@@ -17,6 +36,6 @@ def latencies(core: Core) -> list[tuple[str, str, int]]:
         ("edge", "issue to the sums that contain its force", sums_latency(edge)),
         ("edge", "issue to its new ratio in the memory", written),
         ("node", "issue to its new state in the memories", node.latency),
-        ("stage", "an edge to the next edge of the same node, at least", sums_latency(edge) + node.latency),
+        ("stage", "an edge to the next edge of the same node, at least", loop.edge + loop.node),
         ("host port", "request to answer", HOST_LATENCY),
     ]

@@ -24,11 +24,17 @@ class Sequencer(wiring.Component):
     busy : Out(1), steps_done : Out
     rows, nodes : In
         Lengths of the lists.
-    row_valid, row_last : In(1), row_nodes : In(1)
-        A row stands in front; it is its list's last; all its nodes are among the first ``updated`` of the list.
+    row_valid, row_may, row_last, row_nodes : In(1)
+        A row stands in front (`hw.front.Front`); it was found ready; it is its list's last; all its nodes are among the
+        first ``updated`` of the list.
+    row_behind_nodes : In(1)
+        The same of the row behind the front.
+    row_ready, row_behind_ready : Out(1)
+        The row in front is ready; the one behind would be, if the one in front went now.
     row_take : Out(1), row_stage : Out
-    node_valid, node_last : In(1), node_need : In
-        A node stands in front; it is its list's last; so many rows have to be summed before it.
+    node_valid, node_may, node_last : In(1), node_need : In
+        A node stands in front; it was found ready; it is its list's last; so many rows have to be summed before it.
+    node_behind_last : In(1), node_behind_need : In, node_ready, node_behind_ready : Out(1)
     node_take : Out(1), node_stage : Out
     row_summed, node_updated : In(1)
         A row's forces may be read; a node's new state has been written.
@@ -49,16 +55,25 @@ class Sequencer(wiring.Component):
                 "rows": In(row_bits + 1),
                 "nodes": In(node_bits + 1),
                 "row_valid": In(1),
+                "row_may": In(1),
                 "row_last": In(1),
                 "row_nodes": In(1),
+                "row_behind_nodes": In(1),
+                "row_ready": Out(1),
+                "row_behind_ready": Out(1),
                 "row_take": Out(1),
                 "row_stage": Out(STAGE_BITS),
                 "node_waits": Out(1),
                 "list_waits": Out(1),
                 "end_waits": Out(1),
                 "node_valid": In(1),
+                "node_may": In(1),
                 "node_last": In(1),
                 "node_need": In(row_bits + 1),
+                "node_behind_last": In(1),
+                "node_behind_need": In(row_bits + 1),
+                "node_ready": Out(1),
+                "node_behind_ready": Out(1),
                 "node_take": Out(1),
                 "node_stage": Out(STAGE_BITS),
                 "row_summed": In(1),
@@ -79,14 +94,20 @@ class Sequencer(wiring.Component):
         summed = Signal(len(self.rows))
         update_stage = Signal(STAGE_BITS)
 
-        may_go = (row_lead == 0) | (row_lead == 1) & self.row_nodes
-        complete = (sum_lead != 0) | (summed >= self.node_need) & ~self.node_last
+        # Behind a list's last entry comes its first, of the next stage
+        row_turns, node_turns = self.row_valid & self.row_last, self.node_valid & self.node_last
+        far = (row_lead == 1) & ~row_turns | (row_lead == 0) & row_turns
+        near = (summed >= self.node_behind_need) & ~self.node_behind_last
         m.d.comb += [
-            self.row_take.eq(self.busy & ~rows_over & self.row_valid & may_go),
-            self.node_waits.eq(self.busy & ~rows_over & self.row_valid & ~may_go),
+            self.row_ready.eq((row_lead == 0) | (row_lead == 1) & self.row_nodes),
+            self.row_behind_ready.eq((row_lead == 0) & ~row_turns | far & self.row_behind_nodes),
+            self.node_ready.eq((sum_lead != 0) | (summed >= self.node_need) & ~self.node_last),
+            self.node_behind_ready.eq((sum_lead > node_turns) | (sum_lead == node_turns) & near),
+            self.row_take.eq(self.busy & ~rows_over & self.row_valid & self.row_may),
+            self.node_waits.eq(self.busy & ~rows_over & self.row_valid & ~self.row_may),
             self.list_waits.eq(self.busy & ~rows_over & ~self.row_valid),
             self.end_waits.eq(self.busy & rows_over),
-            self.node_take.eq(self.busy & ~nodes_over & self.node_valid & complete),
+            self.node_take.eq(self.busy & ~nodes_over & self.node_valid & self.node_may),
         ]
 
         # The rows' stage goes up with the list's last row, the updates' stage with the list's last node

@@ -4,35 +4,19 @@ An event is a cycle counted from the first of the run. Rows of edges and rows of
 one a cycle, so that each of them is at its place in the list plus the longest delay of those before it.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from golden.image import Image
 from golden.rk4 import RK4
-from hw.edge import EdgeDatapath
 from hw.fetch import LATENCY as FETCH_LATENCY
-from hw.lane import latency
+from hw.front import LATENCY as FRONT_LATENCY
+from hw.latency import Latencies
 from hw.parameters import Parameters
-from hw.updater import NodeDatapath
 
 from .program import Program
 
 UNTIL_SETTLED = 50
 """Steps after which every list that ends well has found its rhythm."""
-
-
-@dataclass(frozen=True)
-class Latencies:
-    """Cycles from the issue of an edge to the sums with its force, from that of a node to the counter of updates."""
-
-    edge: int
-    node: int
-
-    @classmethod
-    def of(cls, p: Parameters) -> "Latencies":
-        edge, node = EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
-        return cls(latency(edge), node.latency + 1)
 
 
 class Wavefront:
@@ -54,14 +38,15 @@ class Wavefront:
     def run(self, steps: int) -> np.ndarray:
         """(steps,) the first cycle after each step of a run; the last is what the circuit's counter says."""
         updated = np.full(len(self._need), 0)
-        last_row, last_node, ends = FETCH_LATENCY - 1, FETCH_LATENCY - 1, []
+        last_row = last_node = FETCH_LATENCY + FRONT_LATENCY - 1
+        ends = []
         for stage in range(steps * RK4.stages):
             rows = in_turn(updated[self._highest] if stage else np.zeros(self.rows, np.int64), last_row + 1)
             summed = np.concatenate([[0], rows + self.latencies.edge])
             nodes = in_turn(summed[self._need], last_node + 1)
             updated = nodes + self.latencies.node
             last_row, last_node = rows[-1], nodes[-1]
-            ends += [updated[-1]] if stage % RK4.stages == RK4.stages - 1 else []
+            ends += [updated[-1] - FRONT_LATENCY] if stage % RK4.stages == RK4.stages - 1 else []
         return np.array(ends)
 
     def per_step(self) -> int:

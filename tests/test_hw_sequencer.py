@@ -48,6 +48,7 @@ class Run:
         self.row_latency, self.node_latency = latencies
         self._ready, self._rng = ready, rng
         self.rows_taken = self.nodes_taken = 0
+        self._standing, self._may = [False, False], [False, False]  # in front: a row, a node (`hw.front.Front`)
         self.rows_summed = self.nodes_updated = 0  # over all stages, before this cycle
         self.cycles = self.waits = 0
 
@@ -80,15 +81,21 @@ class Run:
         dut, lists = self.dut, self.lists
         row_stage, row = divmod(self.rows_taken, len(lists.rows))
         node_stage, node = divmod(self.nodes_taken, lists.nodes)
-        row_valid, node_valid = self._rng.random(2) < self._ready
+        row_valid, node_valid = self._standing
+        behind = ((row + row_valid) % len(lists.rows), (node + node_valid) % lists.nodes)
         ctx.set(dut.row_summed, summed)
         ctx.set(dut.node_updated, updated)
-        ctx.set(dut.row_valid, bool(row_valid))
+        ctx.set(dut.row_valid, row_valid)
+        ctx.set(dut.row_may, self._may[0])
         ctx.set(dut.row_last, row == len(lists.rows) - 1)
         ctx.set(dut.row_nodes, all(n < ctx.get(dut.updated) for n in lists.rows[row]))
-        ctx.set(dut.node_valid, bool(node_valid))
+        ctx.set(dut.row_behind_nodes, all(n < ctx.get(dut.updated) for n in lists.rows[behind[0]]))
+        ctx.set(dut.node_valid, node_valid)
+        ctx.set(dut.node_may, self._may[1])
         ctx.set(dut.node_last, node == lists.nodes - 1)
         ctx.set(dut.node_need, lists.told[node])
+        ctx.set(dut.node_behind_last, behind[1] == lists.nodes - 1)
+        ctx.set(dut.node_behind_need, lists.told[behind[1]])
         row_take, node_take = ctx.get(dut.row_take), ctx.get(dut.node_take)
         assert row_take <= row_valid and node_take <= node_valid
         if row_take:
@@ -102,6 +109,12 @@ class Run:
             assert ctx.get(dut.node_stage) == node_stage % RK4.stages
             needed = len(lists.rows) * node_stage + lists.need[node]
             assert self.rows_summed >= needed, "a node went before its rows were summed"
+        for k, (name, take) in enumerate((("row", row_take), ("node", node_take))):
+            if take or not self._standing[k]:
+                self._standing[k] = bool(self._rng.random() < self._ready)
+                self._may[k] = self._standing[k] and bool(ctx.get(getattr(dut, f"{name}_behind_ready")))
+            else:
+                self._may[k] |= bool(ctx.get(getattr(dut, f"{name}_ready")))
         waits = ctx.get(dut.node_waits)
         assert waits <= row_valid and not (waits and row_take)
         self.waits += waits

@@ -1,0 +1,58 @@
+"""The entry at the front of a list, and whether it may go: known one cycle ahead, from registers."""
+
+from amaranth.hdl import Module
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+LATENCY = 1
+"""Cycles from an entry behind the front to it in front, and from a reason to go to going."""
+
+
+class Front(wiring.Component):
+    """A register between a `hw.fetch.Fetch` and whoever takes its entries.
+
+    What makes an entry ready is compared while it still stands behind the front, or again in every cycle in which it
+    stands there: ``may`` comes from a register, a cycle after the reason, and an entry may go in every cycle. What is
+    once ready stays so.
+
+    Members
+    -------
+    flush : In(1)
+    behind, behind_valid, behind_ready : In, behind_take : Out(1)
+        The next entry, if there is one; whether it is ready; it moves to the front.
+    entry, valid, may : Out
+        The entry in front, if there is one; it was found ready.
+    ready : In(1)
+        The entry in front is ready.
+    take : In(1)
+        It goes; only while ``valid`` and ``may``.
+    """
+
+    def __init__(self, *, width: int):
+        self.kind = f"front_{width}"
+        super().__init__(
+            {
+                "flush": In(1),
+                "behind": In(width),
+                "behind_valid": In(1),
+                "behind_ready": In(1),
+                "behind_take": Out(1),
+                "entry": Out(width),
+                "valid": Out(1),
+                "may": Out(1),
+                "ready": In(1),
+                "take": In(1),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        moves = ~self.valid | self.take
+        m.d.comb += self.behind_take.eq(moves & self.behind_valid)
+        with m.If(moves):
+            m.d.sync += [self.entry.eq(self.behind), self.valid.eq(self.behind_valid), self.may.eq(self.behind_ready)]
+        with m.Elif(self.ready):
+            m.d.sync += self.may.eq(1)
+        with m.If(self.flush):
+            m.d.sync += self.valid.eq(0)
+        return m
