@@ -4,11 +4,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-from integer_objects import MATERIALS, irregular, pressed, random_image
+from integer_objects import random_image
+from rtl_objects import STATE, assert_same, circuit, renumbered, run, scene
 
 from golden.errors import InputError
 from golden.formats import Formats
-from golden.mesh import Mesh
 from hw.parameters import Parameters
 from hw.registers import Control, Map, Region
 from sim.image import load, ranks
@@ -18,12 +18,6 @@ from sim.program import Program
 from sim.rtl import RtlMachine
 
 LANES = 1, 2, 4
-STATE = "x", "v", "force", "ratio"
-
-
-def circuit(lanes):
-    """All of them have the same lane, which is compiled once; with two it is the circuit that scenes are run on."""
-    return Parameters(lanes=lanes, edges=2048 * lanes)
 
 
 @pytest.fixture
@@ -38,49 +32,6 @@ def simulated():
     yield make
     for machine in machines:
         machine.close()
-
-
-def run(loaded, machine):
-    """The states after each phase, nodes and edges in the scene's order."""
-    nodes, edges = ranks(loaded.node_order), ranks(loaded.edge_order)
-    for phase in loaded.scene.phases:
-        machine.restart(loaded.start(phase, machine.v))
-        machine.step(phase.steps)
-        yield {name: getattr(machine, name)[edges if name == "ratio" else nodes] for name in STATE}
-
-
-def assert_same(ours, theirs):
-    for a, b in zip(ours, theirs, strict=True):
-        for name in STATE:
-            assert np.array_equal(a[name], b[name]), name
-
-
-def fan(spokes=30) -> Mesh:
-    """A hub that every edge but those of the rim meets."""
-    angle = np.arange(spokes) * 2 * np.pi / spokes
-    rim = np.stack([np.cos(angle), np.sin(angle)], 1) * 0.04
-    points = np.concatenate([[[0, 0]], rim]) + [0, 0.04]
-    outer = np.arange(1, spokes + 1)
-    cells = np.stack([np.zeros_like(outer), outer, np.roll(outer, -1)], 1)
-    edges = np.concatenate([cells[:, :2], cells[:, 1:]])
-    return Mesh(points, cells, np.unique(np.sort(edges, axis=1), axis=0))
-
-
-def scene(name, rng, steps):
-    if name == "fan":
-        return pressed(fan(), MATERIALS["rheological"], steps)
-    mesh = irregular((5, 4) if name == "2-D" else (3, 3, 3), rng)
-    edge_material = rng.integers(len(MATERIALS), size=len(mesh.edges))
-    return pressed(mesh, tuple(MATERIALS.values()), steps, edge_material=edge_material)
-
-
-def renumbered(loaded, order):
-    """The same object; its node n is what was node ``order[n]``."""
-    image = loaded.image
-    mass = {name: values[order] for name, values in image.inverse_mass.items()}
-    moved = {name: getattr(image, name)[order] for name in ("x", "v", "load")}
-    other = dataclasses.replace(image, inverse_mass=mass, edges=ranks(order)[image.edges], **moved)
-    return dataclasses.replace(loaded, image=other, node_order=loaded.node_order[order])
 
 
 @pytest.mark.parametrize("lanes", LANES)

@@ -1,0 +1,93 @@
+"""Random meshes of every kind in circuits of every shape: the integer model's bits, the cycle model's cycles."""
+
+import numpy as np
+import pytest
+from integer_objects import MATERIALS, SPACING, irregular, pressed
+from rtl_objects import STATE, circuit, fan, renumbered
+
+from golden.mesh import Mesh, rectangle
+from sim.cycles import Wavefront
+from sim.image import load
+from sim.machines import BUILD
+from sim.native import NativeMachine
+from sim.rtl import RtlMachine
+
+STEPS = 20
+CIRCUITS = [(lanes, updates) for lanes in (1, 2, 4, 6) for updates in (1, 2)]
+
+
+def graded(rng) -> Mesh:
+    """A rectangle whose cells grow from one corner to the other."""
+    nodes = tuple(int(n) for n in rng.integers(3, 9, 2))
+    grid = rectangle(nodes, tuple(SPACING * (n - 1) for n in nodes))
+    size = grid.points.max(axis=0)
+    return Mesh((grid.points / size) ** 1.5 * size, grid.cells, grid.edges)
+
+
+def disconnected(rng) -> Mesh:
+    """Two to four blocks side by side."""
+    parts = [irregular(tuple(int(n) for n in rng.integers(2, 5, 2)), rng) for _ in range(rng.integers(2, 5))]
+    starts = np.cumsum([0] + [len(part.points) for part in parts])
+    points = [part.points + [0.08 * k, 0] for k, part in enumerate(parts)]
+    cells, edges = (
+        np.concatenate([getattr(part, name) + start for part, start in zip(parts, starts, strict=False)])
+        for name in ("cells", "edges")
+    )
+    return Mesh(np.concatenate(points), cells, edges)
+
+
+KINDS = {
+    "2-D": lambda rng: irregular(tuple(int(n) for n in rng.integers(2, 10, 2)), rng),
+    "3-D": lambda rng: irregular(tuple(int(n) for n in rng.integers(2, 6, 3)), rng),
+    "graded": graded,
+    "star": lambda rng: fan(int(rng.integers(3, 31))),
+    "disconnected": disconnected,
+}
+ORDERS = {
+    "fast": lambda one, rng: load(one),
+    "reversed": lambda one, rng: load(one, edge_order=load(one).edge_order[::-1]),
+    "any edges": lambda one, rng: load(one, edge_order=rng.permutation(len(one.mesh.edges))),
+    "any nodes": lambda one, rng: renumbered(load(one), rng.permutation(len(one.mesh.points))),
+}
+
+
+def image(rng, number):
+    """An object in motion, of all materials, in one of the orders."""
+    kind, order = list(KINDS)[number % len(KINDS)], list(ORDERS)[number // len(KINDS) % len(ORDERS)]
+    mesh = KINDS[kind](rng)
+    edge_material = rng.integers(len(MATERIALS), size=len(mesh.edges))
+    one = pressed(mesh, tuple(MATERIALS.values()), 300, edge_material=edge_material)
+    print(f"mesh {number}: {kind}, {len(mesh.points)} nodes, {len(mesh.edges)} edges, {order}")
+    return ORDERS[order](one, rng).image
+
+
+def check(numbers, lanes, updates, seed):
+    parameters = circuit(lanes, updates)
+    for number in numbers:
+        object_ = image(np.random.default_rng([seed, number]), number)
+        model, cycles = NativeMachine(object_), Wavefront(object_, parameters).run(STEPS)
+        machine = RtlMachine(object_, parameters=parameters, folder=BUILD)
+        try:
+            for steps in (1, STEPS):
+                before = machine.cycles
+                model.step(steps)
+                machine.step(steps)
+                assert machine.cycles - before == cycles[steps - 1], f"mesh {number}"
+                for name in STATE:
+                    assert np.array_equal(getattr(machine, name), getattr(model, name)), f"mesh {number}: {name}"
+            assert set(machine.faults) == set(model.faults)
+        finally:
+            machine.close()
+
+
+@pytest.mark.parametrize(("lanes", "updates"), [(2, 1), (4, 2)])
+def test_some_meshes(lanes, updates, seed):
+    check(range(20), lanes, updates, seed)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize(("lanes", "updates"), CIRCUITS)
+def test_three_hundred_meshes(lanes, updates, seed):
+    """Forty in each circuit, no two the same."""
+    first = 40 * CIRCUITS.index((lanes, updates))
+    check(range(first, first + 40), lanes, updates, seed)
