@@ -1,4 +1,5 @@
 """The compiled float model is the golden model, and its step times are taken as they are described."""
+import os
 import re
 from dataclasses import replace
 
@@ -67,8 +68,10 @@ def test_phases_loads_bounds_and_mixed_materials(dim, dtype, allowed):
 def test_threads_compute_what_one_does_and_the_same_every_time(name, threads):
     scene = meshes.scene(name)
     one, some, again = (CompiledModel(scene, np.float64, n) for n in (1, threads, threads))
+    cores = os.sched_getaffinity(0)
     for model in (one, some, again):
         model.step(100)
+    assert os.sched_getaffinity(0) == cores
     for quantity in "xva":
         np.testing.assert_array_equal(getattr(some, quantity), getattr(again, quantity))
         np.testing.assert_allclose(getattr(some, quantity), getattr(one, quantity), rtol=1e-9, atol=1e-13)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from threading import Thread
 
 import numpy as np
@@ -45,14 +46,21 @@ class CompiledModel:
         """Run so many steps and give the time that each of them took (steps,), in ns."""
         counter, stamps = arrays.rows([[0]], np.int64)[0], np.zeros((steps + 1, 2), np.int64)
 
+        cores = sorted(os.sched_getaffinity(0))
+
         def part(thread):
+            if self._threads > 1:  # two on one core would take turns at every barrier, and the system lets them
+                os.sched_setaffinity(0, {cores[thread % len(cores)]})
             run(self._arrays, *self._shares, thread, self._threads, counter, steps, stamps)
 
         # daemons: when an interrupt ends the program, they may be waiting for this thread
         others = [Thread(target=part, args=(thread,), daemon=True) for thread in range(1, self._threads)]
         for other in others:
             other.start()
-        part(0)
+        try:
+            part(0)
+        finally:
+            os.sched_setaffinity(0, cores)
         for other in others:
             other.join()
         return np.diff(stamps @ [10**9, 1])
