@@ -115,19 +115,17 @@ def compare(args) -> int:
 
 
 def bench(args) -> int:
-    from sim.speed import bench, circuit, table, timing  # Numba is slow to load
+    from sim import cycles
+    from sim.speed import bench, table, timing  # Numba is slow to load
     from sim.speed.meshes import MESHES
 
     out = bench.claim(Path(args.out))
     with table.progress() as shown:
-        def cycles(scene, lanes, updates):
-            shown(f"{scene.name}: circuit with {lanes} lane{'s' * (lanes > 1)}")
-            return circuit.cycles_per_step(scene, lanes, updates)
-
         def software(scene):
             return timing.software(scene, args.steps, lambda name: shown(f"{scene.name}: {timing.SOFTWARE[name]}"))
 
-        entries = bench.bench(args.meshes or MESHES, cycles, software, clock=args.clock or bench.CLOCK)
+        clock = args.clock or bench.CLOCK
+        entries = bench.bench(args.meshes or MESHES, cycles.cycles_per_step, software, clock=clock)
     bench.save(entries, out)
     table.print_tables(entries)
     return 0

@@ -6,13 +6,16 @@ one a cycle, so that each of them is at its place in the list plus the longest d
 
 import numpy as np
 
+from golden.errors import InputError
 from golden.image import Image
+from golden.problem import Scene
 from golden.rk4 import RK4
 from hw.fetch import LATENCY as FETCH_LATENCY
 from hw.front import LATENCY as FRONT_LATENCY
 from hw.latency import Latencies
 from hw.parameters import Parameters
 
+from . import limits
 from .program import Program
 
 UNTIL_SETTLED = 50
@@ -71,3 +74,20 @@ def in_turn(ready: np.ndarray, first: int) -> np.ndarray:
     """When entries of a list go that are ready at these times, one a cycle, the first not before ``first``."""
     turns = np.arange(len(ready))
     return turns + np.maximum.accumulate(np.maximum(ready - turns, first))
+
+
+def cycles_per_step(scene: Scene, lanes: int, updates: int) -> int:
+    """Cycles of a step of a scene's object, once running, in a circuit that has room for it.
+
+    Raises
+    ------
+    InputError
+        If there is no such circuit, or it could not hold the scene at any capacity.
+    """
+    image = limits.load(scene).image
+    room = {"nodes": max(2, image.nodes), "edges": len(image.edges), "materials": len(image.materials)}
+    try:
+        parameters = Parameters(lanes=lanes, updates=updates, **room)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return Wavefront(image, parameters).per_step()

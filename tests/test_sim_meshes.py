@@ -6,11 +6,14 @@ from integer_objects import MATERIALS, SPACING, irregular, pressed
 from rtl_objects import STATE, circuit, fan, renumbered
 
 from golden.mesh import Mesh, rectangle
-from sim.cycles import Wavefront
+from hw.parameters import Parameters
+from sim.cycles import Wavefront, cycles_per_step
 from sim.image import load
 from sim.machines import BUILD
 from sim.native import NativeMachine
 from sim.rtl import RtlMachine
+from sim.speed import meshes
+from sim.speed.meshes import MESHES
 
 STEPS = 20
 CIRCUITS = [(lanes, updates) for lanes in (1, 2, 4, 6) for updates in (1, 2)]
@@ -91,3 +94,21 @@ def test_three_hundred_meshes(lanes, updates, seed):
     """Forty in each circuit, no two the same."""
     first = 40 * CIRCUITS.index((lanes, updates))
     check(range(first, first + 40), lanes, updates, seed)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("updates", [1, 2])
+@pytest.mark.parametrize("name", MESHES)
+def test_the_benchmarks_meshes_take_the_cycles_that_it_says(name, updates):
+    scene = meshes.scene(name)
+    parameters = Parameters(lanes=4, updates=updates, nodes=1024)
+    machine = RtlMachine(load(scene).image, parameters=parameters, folder=BUILD)
+    try:
+        runs = []
+        for steps in (20, 21):
+            before = machine.cycles
+            machine.step(steps)
+            runs.append(machine.cycles - before)
+    finally:
+        machine.close()
+    assert runs[1] - runs[0] == cycles_per_step(scene, 4, updates)

@@ -14,7 +14,7 @@ from golden.problem import Scene
 from sim.errors import about
 from sim.speed import meshes
 
-CIRCUITS = (1, 1), (2, 1), (4, 1)
+CIRCUITS = (1, 1), (2, 1), (4, 1), (4, 2), (6, 2)
 """(lanes, updates): edge processors, and nodes updated in a cycle."""
 
 CLOCK = 125.0  # MHz: what the circuit is to reach on the slowest grade of an ECP5
@@ -30,8 +30,7 @@ def bench(names: Iterable[str], cycles_per_step: Callable[[Scene, int, int], int
     cycles_per_step
         Clock cycles of a step of (scene, lanes, updates).
     software
-        Step times of programs as `sim.speed.timing.software` gives them; called once for a mesh, after
-        ``cycles_per_step``, so that what that had to build is done.
+        Step times of programs as `sim.speed.timing.software` gives them; called once for a mesh.
     clock
         MHz.
     """
