@@ -46,7 +46,7 @@ class EdgeBench:
         folder.mkdir(parents=True, exist_ok=True)
         shim = folder / f"{TOP}_bench.cpp"
         shim.write_text(_ports("INPUT", inputs) + _ports("OUTPUT", outputs) + SHIM.read_text())
-        shared = opened(library(TOP, text, shim, folder=folder, parts={}))
+        shared = opened(library(TOP, text, shim, folder=folder))
         self._shared = shared
         shared.bench_new.restype = ctypes.c_void_p
         shared.bench_delete.argtypes = [ctypes.c_void_p]

@@ -9,7 +9,7 @@ import numpy as np
 from golden.image import Image
 from hw.parameters import Parameters
 from hw.registers import NODE_FORCE, NODE_STATE, Control, Map, Region
-from hw.verilog import LANE, TOP, modules
+from hw.verilog import LANE, TOP, emit
 
 from .program import Program
 from .verilated import library, opened
@@ -32,10 +32,10 @@ class Circuit:
     """
 
     def __init__(self, parameters: Parameters, folder: Path, waves: Path | None = None):
-        lane, top, core = modules(parameters)
+        text, core = emit(parameters)
         self.faults = core.faults
         trace = waves.suffix[1:] if waves else None
-        built = library(TOP, top, SHIM, folder=folder, parts={LANE: lane}, trace=trace)
+        built = library(TOP, text, SHIM, folder=folder, repeated=LANE, trace=trace)
         shared = opened(built)
         self._new, self._delete = shared.circuit_new, shared.circuit_delete
         self._transact, self._wait, self._cycles = shared.circuit_transact, shared.circuit_wait, shared.circuit_cycles

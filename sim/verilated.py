@@ -4,6 +4,7 @@ import ctypes
 import fcntl
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -17,8 +18,8 @@ from golden.errors import InputError
 
 FLAGS = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "-Wno-lint", "-Wno-fatal")
 COMPILER = ("c++", "-std=c++17", "-fPIC", "-w")
-FAST, SLOW = "-O1", "-O0"
-"""What runs every cycle (-O2 runs a tenth faster and builds twice as long), and what runs once."""
+FAST, SLOW = "-O2", "-O0"
+"""What runs every cycle, and what runs once."""
 TRACES = {
     None: ((), (), ()),
     "vcd": (("--trace-vcd",), ("verilated_vcd_c.cpp",), ()),
@@ -33,20 +34,20 @@ def tools() -> dict[str, str]:
     return os.environ | {"PATH": path}
 
 
-def library(top: str, text: str, shim: Path, *, folder: Path, parts: dict[str, str], trace: str | None = None) -> Path:
+def library(top: str, text: str, shim: Path, *, folder: Path, repeated: str = "", trace: str | None = None) -> Path:
     """The shared library of the Verilog module ``top`` with the C++ ``shim`` around it; built if it isn't there.
 
     Parameters
     ----------
     text : str
-        Verilog of ``top``.
-    parts : dict of str to str
-        Modules that ``top`` is made of, by name: each is compiled by itself, once for all its places and for all
-        circuits that have it.
+        Verilog of ``top`` and of what it is made of.
+    repeated : str
+        A module that is in it several times: all its places run the same code, which is compiled once and stays in the
+        processor's cache.
     folder : Path
         Where libraries are kept.
     trace : "vcd" or "fst", optional
-        Able to record waveforms; slower to build and to run, and then in one piece.
+        Able to record waveforms; slower to build and to run.
 
     Raises
     ------
@@ -56,16 +57,14 @@ def library(top: str, text: str, shim: Path, *, folder: Path, parts: dict[str, s
         If the Verilog doesn't compile.
     """
     folder = folder.resolve()  # the tools run elsewhere
-    target = folder / f"{top}_{_key(text, shim.read_text(), str(trace), *parts.values())}.so"
+    target = folder / f"{top}_{_key(text, shim.read_text(), repeated, str(trace))}.so"
     with _once(target) as missing:
         if missing:
             _check_tools()
+            if repeated:
+                text = re.sub(rf"(module {repeated}\b[^;]*;)", r"\1 /*verilator no_inline_module*/", text)
             with _workshop(folder) as work:
-                if trace:
-                    text, libraries = "\n".join((*parts.values(), text)), {}
-                else:
-                    libraries = {name: _part(name, part, folder) for name, part in parts.items()}
-                _build(top, text, shim, work, libraries, trace)
+                _build(top, text, shim, work, trace)
                 (work / "library.so").replace(target)
     return target
 
@@ -76,20 +75,6 @@ def opened(path: Path) -> ctypes.CDLL:
         return ctypes.CDLL(str(path.resolve()))
     except OSError:
         raise InputError(f"{path} must be a library, but is damaged: delete it, and it will be built again") from None
-
-
-def _part(name: str, text: str, folder: Path) -> Path:
-    """The folder with ``name``'s objects and the Verilog wrapper that stands for it."""
-    target = folder / f"{name}_{_key(text)}"
-    with _once(target) as missing:
-        if missing:
-            with _workshop(folder) as work:
-                (work / f"{name}.v").write_text(text)
-                command = ["verilator", "--cc", f"{name}.v", "--top-module", name, "--lib-create", name, "-Mdir", "."]
-                _run([*command, *FLAGS], work)
-                _compile(_units([*work.glob(f"V{name}*.cpp"), work / f"{name}.cpp"], work), work)
-                _keep([*work.glob("*.o"), work / f"{name}.sv"], target)
-    return target
 
 
 def _runtime(folder: Path, trace: str | None) -> Path:
@@ -114,15 +99,13 @@ def _keep(paths, target: Path):
     keep.replace(target)
 
 
-def _build(top, text, shim, work, libraries, trace):
+def _build(top, text, shim, work, trace):
     (work / f"{top}.v").write_text(text)
-    wrappers = [str((path / f"{name}.sv").resolve()) for name, path in libraries.items()]
     options, _, linked = TRACES[trace]
-    command = ["verilator", "--cc", f"{top}.v", *wrappers, "--top-module", top, "--prefix", f"V{top}", "-Mdir", "."]
+    command = ["verilator", "--cc", f"{top}.v", "--top-module", top, "--prefix", f"V{top}", "-Mdir", "."]
     _run([*command, *FLAGS, *options], work)
     _compile(_units([*work.glob(f"V{top}*.cpp"), shim.resolve()], work), work, _defines(trace))
-    folders = work, _runtime(work.parent, trace), *libraries.values()
-    objects = [o.resolve() for folder in folders for o in folder.glob("*.o")]
+    objects = [o.resolve() for folder in (work, _runtime(work.parent, trace)) for o in folder.glob("*.o")]
     _run(["c++", "-shared", *map(str, objects), "-o", "library.so", "-pthread", *linked], work)
 
 

@@ -58,7 +58,7 @@ def run(blocks, inputs: list[dict[str, np.ndarray]], folder: Path) -> list[tuple
     """
     texts = [convert(Blocks(blocks), f"blocks_{family}", FAMILIES[family]) for family in ("generic", "ecp5")]
     text = "\n".join([TOP.format(last=SLOT * len(inputs) - 1), *texts, MODELS["ecp5"].read_text()])
-    twins = opened(library("twins", text, SHIM, folder=folder, parts={})).twins
+    twins = opened(library("twins", text, SHIM, folder=folder)).twins
     stimulus = np.stack([_slot(block, values) for block, values in zip(blocks, inputs, strict=True)], axis=1)
     outputs = np.zeros((2, *stimulus.shape), np.uint64)
     pointers = [ctypes.c_void_p(array.ctypes.data) for array in (stimulus, *outputs)]

