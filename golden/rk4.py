@@ -57,11 +57,17 @@ def weigh(stage, factor):
     return stage.last.select(sixth(factor).scale(2), factor).to(factor.fmt), stage.last.scale(1)
 
 
+WIDEST = 54
+"""Bits of a sixth; a state word has more if it is not rounded on the way, an operand has less."""
+
+
 def sixth(x):
     """``x / 6`` to within 2**-32 of it and 2**-6 of its last place: 1/3 = 5 * 17 * 257 * (1 + 2**-16 + ...) / 2**16."""
     third = x + x.scale(2)
     third = third + third.scale(4)
     third = (third + third.scale(8)).scale(-16)
-    guarded = Q(x.fmt.int_bits, x.fmt.frac_bits + 6)
-    third = third.to(guarded)
-    return (third + third.scale(-16).to(guarded)).scale(-1)
+    rest = third.scale(-16)
+    if rest.fmt.frac_bits + x.fmt.int_bits > WIDEST:
+        guarded = Q(x.fmt.int_bits, x.fmt.frac_bits + 6)
+        third, rest = third.to(guarded), third.to(guarded).scale(-16).to(guarded)
+    return (third + rest).scale(-1)

@@ -116,6 +116,12 @@ class Core(wiring.Component):
             getattr(sequencer, f"{name}_may").eq(front.may),
         ]
         words = len(fetch.word)
+        done, cycles = {
+            "row": ("row_summed", latency(self.datapath) - 1), "node": ("node_updated", self.updater.latency),
+        }[name]
+        take = getattr(sequencer, f"{name}_take")
+        for port, value in ((done, take), (f"{done}_last", take & getattr(sequencer, f"{name}_last"))):
+            m.d.comb += getattr(sequencer, port).eq(self._lines.later(value, cycles, name=port, reset=True))
         entry = SimpleNamespace(word=front.entry[:words], last=front.entry[words], index=front.entry[words + 1 :])
         return entry, fetch
 
@@ -152,11 +158,9 @@ class Core(wiring.Component):
                 lane.velocity_shift.eq(host.velocity_shift),
             ]
         m.d.comb += [
-            sequencer.rows.eq(host.rows),
             sequencer.row_last.eq(front.last),
             sequencer.row_nodes.eq(updated(front.word)),
             sequencer.row_behind_nodes.eq(updated(behind.word)),
-            sequencer.row_summed.eq(self._lines.later(sequencer.row_take, latency(self.datapath) - 1, reset=True)),
         ]
 
     def _nodes(self):
@@ -187,12 +191,10 @@ class Core(wiring.Component):
                 *(bit.eq(value) for bit, value in stage_bits(updater, sequencer.node_stage)),
             ]
         m.d.comb += [
-            sequencer.nodes.eq(fetch.count),
             sequencer.node_last.eq(front.last),
             sequencer.node_need.eq(unpack(record, front.word)["need"]),
             sequencer.node_behind_last.eq(behind.last),
             sequencer.node_behind_need.eq(unpack(record, behind.word)["need"]),
-            sequencer.node_updated.eq(self._lines.later(sequencer.node_take, self.updater.latency, reset=True)),
         ]
         for lane in self._lanes:
             m.d.comb += lane.update_row.eq(self.updater.update_row)

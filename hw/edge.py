@@ -41,8 +41,9 @@ class EdgeDatapath:
         return fault_names(self.graph)
 
     def ready(self, output: str) -> int:
-        """The cycle in which an output is valid, counted from the cycle of the nodes."""
-        return self.schedule.cycle[self.graph.outputs[output]]
+        """The cycle in which an output is valid, counted from the cycle of the nodes; from a register in any case."""
+        node = self.graph.outputs[output]
+        return self.schedule.cycle[node] + (not self.cost.of(node))
 
 
 class EdgeProcessor(wiring.Component):
@@ -94,7 +95,7 @@ class EdgeProcessor(wiring.Component):
         tables = {"inverse": self._inverse(m), "damper": self._damper(m)}
         inputs = {name: getattr(self, name) for name in graph.inputs}
         pipe = Pipe(m, self.datapath.schedule, inputs, self.valid, tables)
-        m.d.comb += [getattr(self, name).eq(pipe.output(name)) for name in graph.outputs]
+        m.d.comb += [getattr(self, name).eq(pipe.output(name, self.datapath.ready(name))) for name in graph.outputs]
         m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.datapath.faults))
         pipe.build()
         return m

@@ -19,8 +19,8 @@ from .registers import (
     Region,
 )
 
-LATENCY = READ_LATENCY + 3
-"""Cycles from a request to its answer: request register, decoding, the memory, answer register."""
+LATENCY = READ_LATENCY + 4
+"""Cycles from a request to its answer: request register, two of decoding, the memory, answer register."""
 
 
 def host_signature(state: int) -> dict:
@@ -84,26 +84,30 @@ class HostPort(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        request = Signal(name="request_now")
-        write = Signal(name="write_now")
-        address = Signal(ADDRESS_BITS, name="address_now")
-        data = Signal.like(self.write_data, name="data_now")
-        m.d.sync += [request.eq(self.request), write.eq(self.write)]
-        m.d.sync += [address.eq(self.address), data.eq(self.write_data)]
-
+        request, write, address, data = self._registered(
+            m, "asked", self.request, self.write, self.address, self.write_data
+        )
         parts, low = [], 0
         for bits in (INDEX_BITS, WORD_BITS, LANE_BITS, REGION_BITS):
             parts.append(address[low : low + bits])
             low += bits
         index, word, lane, region = parts
 
-        allowed = Signal()
+        possible = Signal()  # at all; whether it is so just now is seen in the next cycle
         with m.Switch(region):
             for r in Region:
                 with m.Case(r):
                     limits = self._map.depth(r), len(self._map.words(r)), self._map.lanes(r)
                     inside = [place < limit for place, limit in zip((index, word, lane), limits, strict=True)]
-                    m.d.comb += allowed.eq(Cat(*inside).all() & self._permitted(r, write, index, word, data))
+                    m.d.comb += possible.eq(Cat(*inside).all() & self._lawful(r, write, index, word, data))
+        starts = (region == Region.CONTROL) & write & (index == Control.RUN)
+        anytime = (region == Region.CONTROL) & (~write | (index == Control.FAULTS) | (index == Control.REFUSED))
+        request, write, index, word, lane, region, data, possible, starts, anytime = self._registered(
+            m, "now", request, write, index, word, lane, region, data, possible, starts, anytime
+        )
+        allowed = Signal()
+        loaded = (self.rows != 0) & (self.nodes != 0)
+        m.d.comb += allowed.eq(possible & (anytime | ~self.busy & ~self.start) & (~starts | loaded))
         go = Signal()
         m.d.comb += go.eq(request & allowed)
 
@@ -111,7 +115,7 @@ class HostPort(wiring.Component):
         m.d.sync += [self.index.eq(index), self.data.eq(data), self.word.eq(word), self.lane.eq(lane)]
         m.d.sync += [self.strobe[r].eq(go & write & (region == r)) for r in Region]
         control = go & (region == Region.CONTROL)
-        m.d.sync += self.start.eq(control & write & (index == Control.RUN))
+        m.d.sync += self.start.eq(go & starts)
         self._control_writes(m, control & write, index, data)
 
         refused = Signal(32)
@@ -133,23 +137,29 @@ class HostPort(wiring.Component):
         ]
         return m
 
-    def _permitted(self, region, write, index, word, data):
-        p, idle = self._map.parameters, ~self.busy & ~self.start
+    def _registered(self, m, stage, *values):
+        registers = [Signal.like(value, name=f"{stage}_{number}") for number, value in enumerate(values)]
+        m.d.sync += [register.eq(value) for register, value in zip(registers, values, strict=True)]
+        return registers
+
+    def _lawful(self, region, write, index, word, data):
+        """Whether such a word may be written, and such data into it."""
+        p = self._map.parameters
         if region == Region.NODE:
             words = enumerate(self._map.words(region))
             read_only = Cat(word == number for number, name in words if self._map.read_only(region, name))
-            return idle & ~(write & read_only.any())
+            return ~(write & read_only.any())
         if region != Region.CONTROL:
-            return idle
+            return Const(1)
         writable = Array(
             [
                 {
                     Control.FAULTS: Const(1),
                     Control.REFUSED: Const(1),
-                    Control.ROW_COUNT: idle & (data != 0) & (data <= p.rows),
-                    Control.NODE_COUNT: idle & (data != 0) & (data <= p.nodes),
-                    Control.VELOCITY_SHIFT: idle & (data < 1 << p.formats.exponent.width - 1),
-                    Control.RUN: idle & (data != 0) & (data < 1 << 32) & (self.rows != 0) & (self.nodes != 0),
+                    Control.ROW_COUNT: (data != 0) & (data <= p.rows),
+                    Control.NODE_COUNT: (data != 0) & (data <= p.nodes),
+                    Control.VELOCITY_SHIFT: data < 1 << p.formats.exponent.width - 1,
+                    Control.RUN: (data != 0) & (data < 1 << 32),
                 }.get(register, Const(0))
                 for register in Control
             ]

@@ -36,6 +36,11 @@ class Schedule:
     ----------
     latency : int
         Cycles from an item's inputs to the last of its results.
+
+    Raises
+    ------
+    ValueError
+        If a late input is needed before its item comes.
     """
 
     def __init__(self, graph: Graph, cost: Cost, *, late=frozenset(), static=frozenset()):
@@ -48,8 +53,13 @@ class Schedule:
         for node in reversed(graph.nodes):
             if self.cycle[node] is None and node.kind not in {"const", "input", *WIRES}:
                 self.cycle[node] = self._needed(node)
-                self.start[node] = self.cycle[node] - cost.of(node)
+                # Here is time for a register behind each of an operation's steps
+                steps = step_count(node)
+                self.start[node] = self.cycle[node] - max(cost.of(node), steps if steps > 1 else 0)
         self.arrival = {name: self._needed(graph.inputs[name]) for name in sorted(late)}
+        for name, cycle in self.arrival.items():
+            if cycle < 0:
+                raise ValueError(f"{name} must be needed after its item has come, not {-cycle} cycles before")
 
     def _earliest(self, node: Node) -> int | None:
         """None where no operand comes with the item."""
@@ -57,7 +67,11 @@ class Schedule:
             return None
         if node.kind == "input":
             return 0
-        ready = [self.cycle[operand] for operand in node.operands if self.cycle[operand] is not None]
+        ready = [
+            self.cycle[operand] + registered(operand, node)
+            for operand in node.operands
+            if self.cycle[operand] is not None
+        ]
         if not ready or node.kind in WIRES:
             return max(ready, default=None)
         self.start[node] = max(ready)
@@ -69,12 +83,25 @@ class Schedule:
         for other in self.graph.nodes:
             if other.kind in WIRES and other.operands[0] in readings:
                 readings.add(other)
-        uses = (start for other, start in self.start.items() if readings & set(other.operands))
+        uses = (
+            start - registered(operand, other)
+            for other, start in self.start.items()
+            for operand in readings & set(other.operands)
+        )
         return min(uses, default=self.latency)
 
     def stages(self) -> list[tuple[str, str, int, int]]:
         """(name, operation, first cycle, cycle of the result) of each operation that takes time."""
         return [(n.name, n.kind, self.start[n], self.cycle[n]) for n in self.graph.nodes if n in self.start]
+
+
+def registered(operand: Node, user: Node) -> int:
+    """Cycles that an operand waits in a register for its user: one where a rounded number is to be added to another,
+    so that two carry chains are not in one cycle."""
+    while operand.kind in WIRES:
+        operand = operand.operands[0]
+    rounds = operand.kind == "round" and operand.operands[0].fmt.frac_bits > operand.fmt.frac_bits
+    return int(rounds and user.kind in {"add", "sub", "sum"})
 
 
 class Pipe:

@@ -22,8 +22,6 @@ class Sequencer(wiring.Component):
     start : In(1), steps : In
         Begin a run of ``steps`` steps, at least 1; only while not ``busy``.
     busy : Out(1), steps_done : Out
-    rows, nodes : In
-        Lengths of the lists.
     row_valid, row_may, row_last, row_nodes : In(1)
         A row stands in front (`hw.front.Front`); it was found ready; it is its list's last; all its nodes are among the
         first ``updated`` of the list.
@@ -38,6 +36,8 @@ class Sequencer(wiring.Component):
     node_take : Out(1), node_stage : Out
     row_summed, node_updated : In(1)
         A row's forces may be read; a node's new state has been written.
+    row_summed_last, node_updated_last : In(1)
+        The same of a list's last.
     updated : Out
         Nodes updated in the stage before the front row's, as far as that one is not finished.
     node_waits, list_waits, end_waits : Out(1)
@@ -52,8 +52,6 @@ class Sequencer(wiring.Component):
                 "steps": In(step_bits),
                 "busy": Out(1),
                 "steps_done": Out(step_bits),
-                "rows": In(row_bits + 1),
-                "nodes": In(node_bits + 1),
                 "row_valid": In(1),
                 "row_may": In(1),
                 "row_last": In(1),
@@ -77,7 +75,9 @@ class Sequencer(wiring.Component):
                 "node_take": Out(1),
                 "node_stage": Out(STAGE_BITS),
                 "row_summed": In(1),
+                "row_summed_last": In(1),
                 "node_updated": In(1),
+                "node_updated_last": In(1),
                 "updated": Out(node_bits + 1),
             }
         )
@@ -91,8 +91,10 @@ class Sequencer(wiring.Component):
         nodes_over = Signal()
         row_lead = Signal(2)  # stages that the front row is ahead of the updates
         sum_lead = Signal(2)  # stages that the sums are ahead of the front node
-        summed = Signal(len(self.rows))
+        summed = Signal(len(self.node_need))
         update_stage = Signal(STAGE_BITS)
+        steps_left = Signal(len(self.steps))
+        last_step = Signal()  # a step is longer than the cycle that it takes to see it
 
         # Behind a list's last entry comes its first, of the next stage
         row_turns, node_turns = self.row_valid & self.row_last, self.node_valid & self.node_last
@@ -111,14 +113,10 @@ class Sequencer(wiring.Component):
         ]
 
         # The rows' stage goes up with the list's last row, the updates' stage with the list's last node
-        row_stage_done = Signal()
-        sum_stage_done = Signal()
-        node_stage_done = Signal()
-        update_stage_done = Signal()
+        row_stage_done, sum_stage_done = Signal(), self.row_summed_last
+        node_stage_done, update_stage_done = Signal(), self.node_updated_last
         m.d.comb += [
             row_stage_done.eq(self.row_take & self.row_last),
-            update_stage_done.eq(self.node_updated & (self.updated + 1 == self.nodes)),
-            sum_stage_done.eq(self.row_summed & (summed + 1 == self.rows)),
             node_stage_done.eq(self.node_take & self.node_last),
         ]
         m.d.sync += [
@@ -143,12 +141,14 @@ class Sequencer(wiring.Component):
                 m.d.sync += [self.updated.eq(0), update_stage.eq(update_stage + 1)]
                 with m.If(update_stage == last_stage):
                     m.d.sync += [update_stage.eq(0), self.steps_done.eq(self.steps_done + 1)]
-                    with m.If(self.steps_done + 1 == self.steps):
+                    m.d.sync += steps_left.eq(steps_left - 1)
+                    with m.If(last_step):
                         m.d.sync += self.busy.eq(0)
+        m.d.sync += last_step.eq(steps_left == 1)
 
         with m.If(self.start):
             m.d.sync += [signal.eq(0) for signal in (self.row_stage, self.node_stage, update_stage, self.updated)]
             m.d.sync += [signal.eq(0) for signal in (row_lead, sum_lead, summed, rows_over, nodes_over)]
             m.d.sync += [self.busy.eq(1), self.steps_done.eq(0)]
-            m.d.sync += [rows_left.eq(self.steps), nodes_left.eq(self.steps)]
+            m.d.sync += [left.eq(self.steps) for left in (rows_left, nodes_left, steps_left)]
         return m

@@ -40,7 +40,7 @@ class EdgeBench:
         del inputs["velocity_shift"]  # the same for a whole batch
         outputs = {name: (node.fmt.width, datapath.ready(name)) for name, node in graph.outputs.items()}
         self.inputs, self.outputs = list(inputs), list(outputs)
-        self._drain = datapath.schedule.latency + 1
+        self._drain = max(datapath.schedule.latency, *map(datapath.ready, graph.outputs)) + 1
 
         text = convert(EdgeProcessor(datapath), TOP)
         folder.mkdir(parents=True, exist_ok=True)

@@ -98,7 +98,7 @@ def traffic(dut: EdgeProcessor, values, damper, gaps, rng):
     async def bench(ctx):
         await load(ctx)
         ctx.set(dut.velocity_shift, SHIFT)
-        for cycle in range(starts[-1] + datapath.schedule.latency + 1):
+        for cycle in range(starts[-1] + max(ready.values()) + 1):
             ctx.set(dut.valid, cycle in item_at)
             for name, late in arrival.items():
                 item = item_at.get(cycle - late)
@@ -146,7 +146,7 @@ def test_no_operation_starts_before_its_operands_are_there(name):
         if node.kind in WIRES:
             there[node] = there[node.operands[0]]
     for node, start in schedule.start.items():
-        assert schedule.cycle[node] == start + schedule.cost.of(node)
+        assert schedule.cycle[node] >= start + schedule.cost.of(node)
         assert all(there[operand] is None or there[operand] <= start for operand in node.operands), node.name
 
 

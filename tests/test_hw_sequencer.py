@@ -54,13 +54,11 @@ class Run:
 
     async def bench(self, ctx):
         dut, lists = self.dut, self.lists
-        ctx.set(dut.rows, len(lists.rows))
-        ctx.set(dut.nodes, lists.nodes)
         ctx.set(dut.steps, self.steps)
         ctx.set(dut.start, 1)
         await ctx.tick()
         ctx.set(dut.start, 0)
-        row_line, node_line = [False] * self.row_latency, [False] * self.node_latency
+        row_line, node_line = [(False, False)] * self.row_latency, [(False, False)] * self.node_latency
         loop = self.row_latency + self.node_latency + 8
         limit = RK4.stages * self.steps * (len(lists.rows) + lists.nodes) * loop
         while ctx.get(dut.busy):
@@ -83,8 +81,11 @@ class Run:
         node_stage, node = divmod(self.nodes_taken, lists.nodes)
         row_valid, node_valid = self._standing
         behind = ((row + row_valid) % len(lists.rows), (node + node_valid) % lists.nodes)
+        (summed, sums_last), (updated, updates_last) = summed, updated
         ctx.set(dut.row_summed, summed)
+        ctx.set(dut.row_summed_last, sums_last)
         ctx.set(dut.node_updated, updated)
+        ctx.set(dut.node_updated_last, updates_last)
         ctx.set(dut.row_valid, row_valid)
         ctx.set(dut.row_may, self._may[0])
         ctx.set(dut.row_last, row == len(lists.rows) - 1)
@@ -122,7 +123,8 @@ class Run:
         self.nodes_taken += node_take
         self.rows_summed += summed
         self.nodes_updated += updated
-        return bool(row_take), bool(node_take)
+        lasts = row == len(lists.rows) - 1, node == lists.nodes - 1
+        return tuple((bool(take), bool(take and last)) for take, last in zip((row_take, node_take), lasts, strict=True))
 
 
 def watched(*runs):
