@@ -91,9 +91,13 @@ class Circuit:
             raise RuntimeError(f"the circuit refused to read {addresses[int(error.argmax())]:#x}")
         return answer
 
+    def run(self, cycles: int) -> bool:
+        """Simulate so many cycles, or to the end of the run; whether it goes on."""
+        return bool(self._wait(self._handle, cycles))
+
     def wait(self):
         """Simulate until the run is over."""
-        while self._wait(self._handle, CHUNK):
+        while self.run(CHUNK):
             pass
 
 

@@ -10,7 +10,7 @@ from rtl_objects import STATE, assert_same, circuit, renumbered, run, scene
 from golden.errors import InputError
 from golden.formats import Formats
 from hw.parameters import Parameters
-from hw.registers import Control, Map, Region
+from hw.registers import MAGIC, Control, Map, Region
 from sim.image import load, ranks
 from sim.machines import BUILD
 from sim.native import NativeMachine
@@ -93,6 +93,28 @@ def test_a_run_in_pieces_is_the_same_run_and_its_cycles_add_up(rng, simulated):
         assert all(np.array_equal(getattr(pieces, name), getattr(model, name)) for name in STATE)
         counted = pieces.cycles - before
         assert len(loaded.image.edges) / 2 * 4 * steps < counted < pieces.circuit.clock - clock
+
+
+def test_after_a_reset_at_any_cycle_the_machine_says_so_and_is_loaded_again(rng, simulated):
+    """500 times, in the middle of a run and around its beginning; what is loaded then runs as ever."""
+    loaded = load(scene("2-D", rng, 30))
+    expected = NativeMachine(loaded.image)
+    expected.step(1)
+    machine, map_ = simulated(loaded.image, circuit(2)), Map(circuit(2))
+    circuit_, program = machine.circuit, Program(loaded.image, circuit(2))
+    kept = [(address, data) for address, data in program.load() if address < map_.address(Region.MATERIAL)]
+    kept += program.start(loaded.image.v, loaded.image.x)  # a reset leaves materials and tables, which no run changes
+    registers = {r: map_.address(Region.CONTROL, 0, r) for r in Control}
+    for cycles in rng.integers(0, 2000, 500):
+        circuit_.write([(registers[Control.RUN], 1000)])
+        circuit_.run(int(cycles))
+        assert cycles < 3 or circuit_.read([registers[Control.BUSY]])[0] == 1
+        circuit_.reset()
+        asked = [Control.MAGIC, Control.BUSY, Control.ROW_COUNT, Control.NODE_COUNT, Control.STEPS_DONE, Control.FAULTS]
+        assert circuit_.read([registers[r] for r in asked]).tolist() == [MAGIC, 0, 0, 0, 0, 0]
+        circuit_.write(kept)
+        machine.step(1)
+        assert all(np.array_equal(getattr(machine, name), getattr(expected, name)) for name in STATE)
 
 
 def test_what_the_circuit_refuses_is_an_error_here(rng, simulated):
