@@ -143,7 +143,7 @@ def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypa
     image = random_image(rng)
     lane, top, core = emitted
     models = MODELS["ecp5"].read_text()
-    monkeypatch.setattr(sim.rtl, "modules", lambda parameters: (lane + models, top + models, core))
+    monkeypatch.setattr(sim.rtl, "emit", lambda parameters: (top + lane + models, core))
     circuit = RtlMachine(image, parameters=core.parameters, folder=BUILD)
     model = NativeMachine(image)
     for steps in (1, 3, 50):

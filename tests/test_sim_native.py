@@ -133,5 +133,5 @@ def test_arrays_of_another_shape_are_refused(rng):
 
 def test_numbers_wider_than_an_integer_of_the_machine_are_refused(monkeypatch):
     monkeypatch.setattr("sim.native_source.WIDEST", 52)
-    with pytest.raises(ValueError, match=r"^value_add3 must have at most 52 bits, not 53: take shorter state words$"):
+    with pytest.raises(ValueError, match=r"^weighted_add must have at most 52 bits, not 53: take shorter state words$"):
         sources(Formats())
