@@ -69,5 +69,6 @@ def sixth(x):
     rest = third.scale(-16)
     if rest.fmt.frac_bits + x.fmt.int_bits > WIDEST:
         guarded = Q(x.fmt.int_bits, x.fmt.frac_bits + 6)
-        third, rest = third.to(guarded), third.to(guarded).scale(-16).to(guarded)
+        third = third.to(guarded)
+        rest = third.scale(-16).to(guarded)
     return (third + rest).scale(-1)

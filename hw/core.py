@@ -8,12 +8,12 @@ from amaranth.lib.wiring import In, Out
 
 from golden import records
 from golden.graph import AXES
-from golden.rk4 import RK4
 
 from .blocks.memory import READ_LATENCY, BlockRam
 from .delay import DelayLines
 from .edge import EdgeDatapath
 from .fetch import Fetch
+from .fields import stage_bits, unpack
 from .front import Front
 from .host import HostPort, host_signature
 from .lane import NEXT, NODE_WORDS, Lane, latency
@@ -288,19 +288,3 @@ class Core(wiring.Component):
             counter = Signal(len(host.cycles), name=name)
             m.d.comb += getattr(host, name).eq(counter)
             m.d.sync += counter.eq(Mux(host.start, 0, counter + events[name]))
-
-
-def unpack(record, word):
-    """The fields of a packed record (`golden.records.pack`) as slices."""
-    fields, low = {}, 0
-    for name, q in record.items():
-        fields[name] = word[low : low + q.width]
-        low += q.width
-    return fields
-
-
-def stage_bits(component, stage):
-    """(port, value) of the stage bits of a component for a stage number."""
-    for bit in RK4.stage(0):
-        value = Array([RK4.stage(s)[bit] for s in range(RK4.stages)])[stage]
-        yield getattr(component, f"stage_{bit}"), value

@@ -142,7 +142,7 @@ def test_the_pull_of_the_opposite_trial_force_is_the_opposite_but_for_ties(name,
     assert np.array_equal(there["trial"].raw, -back["trial"].raw) and there["trial"].raw.any()
     for one, other in zip(there["pull"], back["pull"], strict=True):
         off = one.raw + other.raw
-        assert np.isin(off, [0, 1]).all() and (off == 0).mean() > 0.8
+        assert np.isin(off, [0, 1]).all() and not off.all()  # a half is rounded up on both sides
 
 
 @pytest.mark.parametrize("name", MATERIALS)

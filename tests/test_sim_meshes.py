@@ -6,6 +6,7 @@ from integer_objects import MATERIALS, SPACING, irregular, pressed
 from rtl_objects import STATE, circuit, fan, renumbered
 
 from golden.mesh import Mesh, rectangle
+from hw.latency import Latencies
 from hw.parameters import Parameters
 from sim.cycles import Wavefront, cycles_per_step
 from sim.image import load
@@ -112,3 +113,13 @@ def test_the_benchmarks_meshes_take_the_cycles_that_it_says(name, updates):
     finally:
         machine.close()
     assert runs[1] - runs[0] == cycles_per_step(scene, 4, updates)
+
+
+@pytest.mark.parametrize(("lanes", "updates"), CIRCUITS)
+def test_every_step_takes_as_long(lanes, updates, seed):
+    """Which `Wavefront.per_step` insists on; nothing proves that no list takes turns, so many are tried."""
+    parameters = circuit(lanes, updates)
+    latencies = Latencies.of(parameters)
+    for number in range(20):
+        object_ = image(np.random.default_rng([seed, number]), number)
+        assert Wavefront(object_, parameters, latencies).per_step() > 0

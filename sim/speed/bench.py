@@ -11,6 +11,7 @@ from pathlib import Path
 from golden.errors import InputError
 from golden.files import write_text
 from golden.problem import Scene
+from golden.rk4 import RK4
 from sim.errors import about
 from sim.speed import meshes
 
@@ -18,7 +19,6 @@ CIRCUITS = (1, 1), (2, 1), (4, 1), (4, 2), (6, 2)
 """(lanes, updates): edge processors, and nodes updated in a cycle."""
 
 CLOCK = 125.0  # MHz: what the circuit is to reach on the slowest grade of an ECP5
-STAGES = 4  # of classical Runge-Kutta: every edge is evaluated in each
 
 
 def bench(names: Iterable[str], cycles_per_step: Callable[[Scene, int, int], int], software: Callable[[Scene], dict],
@@ -46,7 +46,7 @@ def bench(names: Iterable[str], cycles_per_step: Callable[[Scene, int, int], int
 
 def entry(scene: Scene, lanes: int, updates: int, cycles: int, clock: float, software: dict[str, dict]) -> dict:
     """A mesh's object in bench.json for one circuit; a program's ``ratio`` is its step over the circuit's."""
-    evaluations, step = STAGES * len(scene.mesh.edges), cycles / clock
+    evaluations, step = RK4.stages * len(scene.mesh.edges), cycles / clock
     return {
         "mesh": scene.name,
         "lanes": lanes,

@@ -1,0 +1,21 @@
+"""Fields of packed records, and the bits that tell a datapath its stage, as hardware values."""
+
+from amaranth.hdl import Array
+
+from golden.rk4 import RK4
+
+
+def unpack(record, word):
+    """The fields of a packed record (`golden.records.pack`) as slices."""
+    fields, low = {}, 0
+    for name, q in record.items():
+        fields[name] = word[low : low + q.width]
+        low += q.width
+    return fields
+
+
+def stage_bits(component, stage):
+    """(port, value) of the stage bits of a component for a stage number."""
+    for bit in RK4.stage(0):
+        value = Array([RK4.stage(s)[bit] for s in range(RK4.stages)])[stage]
+        yield getattr(component, f"stage_{bit}"), value
