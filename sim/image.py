@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from golden import records
 from golden.edge import axis_of, voigt_length
@@ -16,6 +14,7 @@ from golden.qformat import Q
 from golden.tables import Tables
 
 from .coefficients import coefficient, coefficients, ratio
+from .order import order, ranks
 from .units import Units, choose
 
 
@@ -81,24 +80,6 @@ def inverse_mass(mass: np.ndarray, units: Units, formats: Formats) -> dict[str, 
     return {"value": np.array(values, np.int64), "shift": np.array(shifts, np.int64)}
 
 
-def order(nodes: int, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(node order, edge order): nodes by reverse Cuthill-McKee, edges by their higher node.
-
-    A node's edges then come soon after one another, so that it can be updated early in the sweep.
-    """
-    ones = np.ones(len(edges), np.int8)
-    graph = coo_array((ones, (edges[:, 0], edges[:, 1])), shape=(nodes, nodes)).tocsr()
-    node_order = np.asarray(reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True), np.int64)
-    ends = np.sort(ranks(node_order)[edges], axis=1)
-    return node_order, np.lexsort((ends[:, 0], ends[:, 1]))
-
-
-def ranks(order: np.ndarray) -> np.ndarray:
-    inverse = np.empty_like(order)
-    inverse[order] = np.arange(len(order))
-    return inverse
-
-
 def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray | None = None) -> Loaded:
     """The circuit's numbers for a scene, at the start of its first phase.
 
@@ -114,7 +95,7 @@ def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray
     """
     formats = formats or Formats()
     units = choose(scene, formats)
-    node_order, sorted_edges = order(len(scene.mesh.points), scene.mesh.edges)
+    node_order, sorted_edges = order(scene.mesh.points, scene.mesh.edges)
     edge_order = sorted_edges if edge_order is None else edge_order
     edges = np.sort(ranks(node_order)[scene.mesh.edges[edge_order]], axis=1)
 

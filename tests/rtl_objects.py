@@ -7,7 +7,7 @@ from integer_objects import MATERIALS, irregular, pressed
 
 from golden.mesh import Mesh
 from hw.parameters import Parameters
-from sim.image import ranks
+from sim.order import ranks
 
 STATE = "x", "v", "force", "ratio"
 

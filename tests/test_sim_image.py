@@ -12,7 +12,8 @@ from golden.formats import Formats
 from golden.machine import Machine
 from sim import limits
 from sim.coefficients import coefficient
-from sim.image import load, order, ranks
+from sim.image import load
+from sim.order import order, ranks
 from sim.run import run
 from sim.units import HEADROOM, choose, expected_speed
 
@@ -118,23 +119,10 @@ def test_units_are_powers_of_two_with_headroom(dim):
         np.testing.assert_allclose(units.velocity, scene.size / scene.dt * 2.0**-units.velocity_shift, rtol=1e-15)
 
 
-@pytest.mark.parametrize("dim", [2, 3])
-def test_order(dim, rng):
-    """Permutations; edges by their higher node, then the lower; neighbours get numbers close to each other."""
-    m = mesh.rectangle((6, 5), (1, 1)) if dim == 2 else mesh.box((4, 4, 4), (1, 1, 1))
-    n, shuffle = len(m.points), rng.permutation(len(m.points))
-    edges = np.sort(shuffle[m.edges], axis=1)
-    node_order, edge_order = order(n, edges)
-    assert sorted(node_order) == list(range(n)) and sorted(edge_order) == list(range(len(edges)))
-    low, high = np.sort(ranks(node_order)[edges[edge_order]], axis=1).T
-    assert (np.diff(high * n + low) > 0).all()
-    assert (high - low).max() < np.ptp(edges, axis=1).max() / 2
-
-
 def test_the_image_is_in_this_order():
     scene = mixed()
     loaded = load(scene)
-    node_order, edge_order = order(12, scene.mesh.edges)
+    node_order, edge_order = order(scene.mesh.points, scene.mesh.edges)
     assert (loaded.node_order == node_order).all() and (loaded.edge_order == edge_order).all()
     ends = np.sort(node_order[loaded.image.edges], axis=1)
     assert (ends == scene.mesh.edges[edge_order]).all()

@@ -11,9 +11,10 @@ from golden.errors import InputError
 from golden.formats import Formats
 from hw.parameters import Parameters
 from hw.registers import MAGIC, Control, Map, Region
-from sim.image import load, ranks
+from sim.image import load
 from sim.machines import BUILD
 from sim.native import NativeMachine
+from sim.order import ranks
 from sim.program import Program
 from sim.rtl import RtlMachine
 
