@@ -4,6 +4,7 @@ A block-normalised quantity ``q`` is a mantissa and a shift: its value is ``q * 
 """
 
 from .block import clamp, difference, dot, magnitude, normalise, with_sign
+from .qformat import Q
 from .rk4 import rk4, weigh
 
 
@@ -73,6 +74,7 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
 
     total, value = rk4(stage, state.base, state.total, slope)
     total_next = total.to(fmt.ratio)
+    value = value.to(Q(value.fmt.int_bits + 1, fmt.ratio.frac_bits))  # never saturates: what is beyond is clamped
     ratio_next = clamp(value, material.a_min, material.a_max).to(fmt.ratio)
     base_next = stage.last.select(ratio_next, state.base)
     return axis | branch | locals()
@@ -84,7 +86,8 @@ def axis_of(fmt, tables, xi, xj):
     d, d_shift = normalise([c.scale(-span) for c in difference(xj, xi)], fmt.operand)
     squared = dot(d, d)
     short = squared < 1
-    square = short.select(squared.scale(2), squared).to(fmt.square)
+    silent = fmt.square.nameless  # the one that is not taken may saturate, the other one only by its last place
+    square = short.select(squared.scale(2).to(silent), squared.to(silent))
     degenerate = square < 1
     degenerate.fault("edge length")
     inverse = interpolate_inverse(fmt, tables, square)

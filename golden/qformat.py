@@ -53,6 +53,11 @@ class Q:
     def raw_max(self) -> int:
         return (1 << self.width - self.signed) - 1
 
+    @cached_property
+    def nameless(self) -> "Q":
+        """The same format, but a number that saturates to it is no fault."""
+        return Q(self.int_bits, self.frac_bits, self.signed)
+
     def __str__(self):
         return f"{'' if self.signed else 'U'}Q{self.int_bits}.{self.frac_bits}"
 

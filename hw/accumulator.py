@@ -1,6 +1,9 @@
 """The forces on nodes, summed edge by edge."""
 
-from amaranth.hdl import Cat, Module, Mux, Signal, signed
+import functools
+import operator
+
+from amaranth.hdl import Cat, Module, Mux, Signal, Value, signed
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -56,31 +59,32 @@ class Accumulator(wiring.Component):
         # The force under way: k cycles after its announcement
         valid, node, first = [self.valid], [self.node], [self.first]
         for k in range(1, READ_LATENCY + WRITTEN + 1):
-            lines = [(valid, "valid"), (node, "node")] + ([(first, "first")] if k <= READ_LATENCY else [])
+            lines = [(valid, "valid"), (node, "node")] + ([(first, "first")] if k < READ_LATENCY else [])
             for line, name in lines:
                 register = Signal.like(line[0], name=f"{name}_{k}", reset_less=name != "valid")
                 m.d.sync += register.eq(line[-1])
                 line.append(register)
 
-        # At READ_LATENCY it meets its force; a sum of 1, 2 or 3 cycles ago is not in the word that was read
+        # At READ_LATENCY it meets its force. A sum of 1, 2 or 3 cycles ago is not in the word that was read: the latest
+        # of them counts. Which it is, is found out a cycle before; then the older ones are already there
         now, recent = READ_LATENCY, range(1, READ_LATENCY + WRITTEN)
-        forward = []
-        for age in recent:
-            hit = Signal(name=f"forward_{age}")
-            m.d.sync += hit.eq(valid[now - 1 + age] & (node[now - 1 + age] == node[now - 1]))
-            forward.append(hit)
+        same = [valid[now - 1 + age] & (node[now - 1 + age] == node[now - 1]) for age in recent]
+        hits = [Signal(name=f"same_{age}") for age in recent]
+        stored, latest = Signal(reset_less=True), Signal(reset_less=True)
+        for number, hit in enumerate(hits):
+            m.d.comb += hit.eq(~first[now - 1] & same[number] & ~Cat(same[:number]).any())
+        m.d.sync += [stored.eq(~first[now - 1] & ~Cat(same).any()), latest.eq(hits[0])]
 
         for axis in AXES:
             pull, width = getattr(self, f"pull_{axis}"), len(getattr(self, f"sum0_{axis}"))
             m.submodules[f"sum_{axis}_edges"] = own = BlockRam(width=width, depth=self._nodes)
-            sums = [Signal(signed(width), name=f"sum_{axis}_{age}", reset_less=True) for age in recent]
+            # Of 1 and 2 cycles ago
+            sums = [Signal(signed(width), name=f"sum_{axis}_{age}", reset_less=True) for age in recent[:-1]]
+            earlier = Signal(signed(width), name=f"earlier_{axis}", reset_less=True)
+            m.d.sync += earlier.eq(_chosen(zip(hits[1:], sums, strict=True)))
             before = Signal(signed(width), name=f"before_{axis}")
-            m.d.comb += before.eq(own.data)
-            for hit, recently in reversed(list(zip(forward, sums, strict=True))):
-                with m.If(hit):
-                    m.d.comb += before.eq(recently)
-            start = Mux(first[now], 0, before)
-            m.d.sync += sums[0].eq(start - pull if self._subtract else start + pull)
+            m.d.comb += before.eq(_chosen([(stored, own.data), (latest, sums[0])]) | earlier)
+            m.d.sync += sums[0].eq(before - pull if self._subtract else before + pull)
             m.d.sync += Cat(*sums[1:]).eq(Cat(*sums[:-1]))
             where = node[now + 1]
             m.d.comb += [
@@ -100,3 +104,8 @@ class Accumulator(wiring.Component):
                     getattr(self, f"sum{n}_{axis}").eq(copy.data),
                 ]
         return m
+
+
+def _chosen(choices) -> Value:
+    """The one word whose bit is 1, or 0."""
+    return functools.reduce(operator.or_, (Mux(bit, word, 0) for bit, word in choices))

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from amaranth.hdl import Array, Cat, Module, Mux, Signal
+from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -10,12 +10,13 @@ from golden import records
 from golden.graph import AXES
 
 from .blocks.memory import READ_LATENCY, BlockRam
+from .choice import choose
 from .delay import DelayLines
 from .edge import EdgeDatapath
 from .fetch import Fetch
 from .fields import stage_bits, unpack
 from .front import Front
-from .host import HostPort, host_signature
+from .host import CHOICE, HostPort, host_signature
 from .lane import NEXT, NODE_WORDS, Lane, latency
 from .parameters import Parameters
 from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
@@ -83,7 +84,7 @@ class Core(wiring.Component):
         sources += [(updater.faults, updater.fault) for updater in self.updaters]
         for number, name in enumerate(self.faults):
             bits = [bit[names.index(name)] for names, bit in sources if name in names]
-            m.d.comb += fault[number].eq(Cat(*bits).any())
+            m.d.sync += fault[number].eq(Cat(*bits).any())
         m.d.comb += self._host.fault.eq(fault)
         self._lines.build()
         return m
@@ -227,10 +228,12 @@ class Core(wiring.Component):
         def strobes(names, number):
             return Cat(self._strobe(Region.NODE, words.index(name)) & (column == number) for name in names)
 
-        word, lane, read_column = (
-            self._lines.later(signal, READ_LATENCY, name=name)
-            for signal, name in ((host.word, "word"), (host.lane, "lane"), (column, "column"))
-        )
+        def chosen(words, index, name, ahead=READ_LATENCY):
+            return choose(m, self._lines, words, index, cycles=CHOICE, name=name, ahead=ahead)
+
+        def then_chosen(words, index, name):
+            return chosen(words, index, name, ahead=READ_LATENCY + CHOICE)
+
         nodes = []
         for number, (updater, entry) in enumerate(zip(self.updaters, self._node_entries, strict=True)):
             m.d.comb += [
@@ -243,13 +246,11 @@ class Core(wiring.Component):
             ]
             reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
             reads += [updater.host_mass, entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
-            nodes.append(Array(reads)[word])
-        m.d.comb += host.node_word.eq(Array(nodes)[read_column])
+            nodes.append(chosen(reads, host.word, f"node{number}"))
+        m.d.comb += host.node_word.eq(then_chosen(nodes, column, "node"))
 
         edges, materials, tables = [], [], []
         for number, (port, entry) in enumerate(zip(self._lanes, self._edge_entries, strict=True)):
-            material = Signal.like(port.host_material, name=f"material_word{number}")
-            m.d.sync += material.eq(port.host_material)
             m.d.comb += [
                 port.host.eq(self._idle),
                 port.host_index.eq(host.index),
@@ -257,15 +258,15 @@ class Core(wiring.Component):
                 port.host_write_length.eq(self._strobe(Region.EDGE, 1, number)),
                 port.host_write_ratio.eq(self._strobe(Region.EDGE, 2, number)),
                 port.host_write_table.eq(Cat(self._strobe(Region.TABLE, 0), self._strobe(Region.TABLE, 1))),
-                port.host_field.eq(self._lines.later(host.word, 1)),
+                port.host_field.eq(host.word),
                 *(bit.eq(self._strobe(Region.MATERIAL, k)) for k, bit in enumerate(port.host_write_material)),
             ]
-            edges.append(Array([entry, port.host_length, port.host_ratio])[word])
-            materials.append(material)
+            edges.append(chosen([entry, port.host_length, port.host_ratio], host.word, f"edge{number}"))
+            materials.append(port.host_material)
             half = len(port.host_table) // 2
-            tables.append(Mux(word[0], port.host_table[half:], port.host_table[:half]))
-        for port, choices in ((host.edge_word, edges), (host.material_word, materials), (host.table_word, tables)):
-            m.d.comb += port.eq(Array(choices)[lane])
+            tables.append(chosen([port.host_table[:half], port.host_table[half:]], host.word, f"table{number}"))
+        for name, choices in (("edge", edges), ("material", materials), ("table", tables)):
+            m.d.comb += getattr(host, f"{name}_word").eq(then_chosen(choices, host.lane, name))
         for name, member in self._host_members.items():
             inner, outer = getattr(host, name), getattr(self, name)
             m.d.comb += inner.eq(outer) if member.flow == In else outer.eq(inner)

@@ -62,7 +62,8 @@ class EdgeProcessor(wiring.Component):
     <inputs of the graph> : In
     <outputs of the graph> : Out
     fault : Out
-        One bit for each name in ``datapath.faults``: 1 in the cycle in which it happens to a valid edge.
+        One bit for each name in ``datapath.faults``: 1 when it has happened to a valid edge, `FAULT_LATENCY` cycles
+        before.
     table_write, table_address, table_data : In
         Writes a word of the damper tables; only while no edge is under way.
     table_read : In(1), table_word : Out

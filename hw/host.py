@@ -5,6 +5,8 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from .blocks.memory import READ_LATENCY
+from .choice import choose
+from .delay import DelayLines
 from .registers import (
     ADDRESS_BITS,
     COUNTERS,
@@ -19,8 +21,11 @@ from .registers import (
     Region,
 )
 
-LATENCY = READ_LATENCY + 4
-"""Cycles from a request to its answer: request register, two of decoding, the memory, answer register."""
+CHOICE = 2
+"""Cycles for choosing a word, then a lane, then a region."""
+
+LATENCY = 4 + READ_LATENCY + 3 * CHOICE
+"""Cycles from a request to its answer: request register, three of decoding, the memory, the choices."""
 
 
 def host_signature(state: int) -> dict:
@@ -51,7 +56,7 @@ class HostPort(wiring.Component):
     strobe : Out
         One bit a region: it is a write to that region.
     <region>_word : In
-        What the region's memories hold at the access's address, `READ_LATENCY` cycles later.
+        What the region's memories hold at the access's address, `READ_LATENCY` + 2 `CHOICE` cycles later.
     start, steps : Out
     busy, <counters of `hw.registers.COUNTERS`>, steps_done, fault : In
     rows, nodes, velocity_shift : Out
@@ -93,20 +98,22 @@ class HostPort(wiring.Component):
             low += bits
         index, word, lane, region = parts
 
-        possible = Signal()  # at all; whether it is so just now is seen in the next cycle
-        with m.Switch(region):
-            for r in Region:
-                with m.Case(r):
-                    limits = self._map.depth(r), len(self._map.words(r)), self._map.lanes(r)
-                    inside = [place < limit for place, limit in zip((index, word, lane), limits, strict=True)]
-                    m.d.comb += possible.eq(Cat(*inside).all() & self._lawful(r, write, index, word, data))
+        possible = Signal(len(Region))  # at all, were it this region; whether it is so just now is seen later
+        for r in Region:
+            limits = self._map.depth(r), len(self._map.words(r)), self._map.lanes(r)
+            inside = [place < limit for place, limit in zip((index, word, lane), limits, strict=True)]
+            m.d.comb += possible[r].eq(Cat(*inside).all() & self._lawful(r, write, index, word, data))
+        request, write, index, word, lane, region, data, possible = self._registered(
+            m, "judged", request, write, index, word, lane, region, data, possible
+        )
         starts = (region == Region.CONTROL) & write & (index == Control.RUN)
         anytime = (region == Region.CONTROL) & (~write | (index == Control.FAULTS) | (index == Control.REFUSED))
         request, write, index, word, lane, region, data, possible, starts, anytime = self._registered(
-            m, "now", request, write, index, word, lane, region, data, possible, starts, anytime
+            m, "now", request, write, index, word, lane, region, data, Array(possible)[region], starts, anytime
         )
         allowed = Signal()
-        loaded = (self.rows != 0) & (self.nodes != 0)
+        self._loaded = {Control.ROW_COUNT: Signal(name="rows_loaded"), Control.NODE_COUNT: Signal(name="nodes_loaded")}
+        loaded = Cat(self._loaded.values()).all()  # a count that is written is not 0
         m.d.comb += allowed.eq(possible & (anytime | ~self.busy & ~self.start) & (~starts | loaded))
         go = Signal()
         m.d.comb += go.eq(request & allowed)
@@ -123,18 +130,15 @@ class HostPort(wiring.Component):
         with m.If(control & write & (index == Control.REFUSED)):
             m.d.sync += refused.eq(0)
 
-        tag = Cat(request, request & ~allowed, region)
-        for k in range(READ_LATENCY + 1):
-            tag_next = Signal(len(tag), name=f"tag_{k}")
-            m.d.sync += tag_next.eq(tag)
-            tag = tag_next
-        register = self._control_reads(m, index, refused)
-        words = [register, *(getattr(self, word_of(r)) for r in Region if r != Region.CONTROL)]
-        m.d.sync += [
-            self.answer.eq(tag[0]),
-            self.error.eq(tag[1]),
-            self.read_data.eq(Mux(tag[1], 0, Array(words)[tag[2:]])),
-        ]
+        lines = DelayLines(m)
+        until_chosen = 1 + READ_LATENCY + 2 * CHOICE
+        register = choose(m, lines, self._registers(refused), index, cycles=until_chosen, name="register")
+        words = [register, *(getattr(self, word_of(r)) for r in Region if r != Region.CONTROL), Const(0)]
+        which = lines.later(Mux(allowed, region, len(Region)), until_chosen, name="which")
+        for port, value in ((self.answer, request), (self.error, request & ~allowed)):
+            m.d.comb += port.eq(lines.later(value, until_chosen + CHOICE, name=port.name, reset=True))
+        m.d.comb += self.read_data.eq(choose(m, lines, words, which, cycles=CHOICE, name="read"))
+        lines.build()
         return m
 
     def _registered(self, m, stage, *values):
@@ -175,11 +179,14 @@ class HostPort(wiring.Component):
         ):
             with m.If(write & (index == register)):
                 m.d.sync += target.eq(data)
+                if register in self._loaded:
+                    m.d.sync += self._loaded[register].eq(1)
         clear = Mux(write & (index == Control.FAULTS), data[: len(self.fault)], 0)
         self._sticky = Signal(len(self.fault), name="sticky_faults")
         m.d.sync += self._sticky.eq(self._sticky & ~clear | self.fault)
 
-    def _control_reads(self, m, index, refused):
+    def _registers(self, refused):
+        """What a read of each control register gives."""
         p, state = self._map.parameters, len(self.read_data)
         values = {
             Control.MAGIC: Const(MAGIC, state),
@@ -200,12 +207,7 @@ class HostPort(wiring.Component):
             Control.VELOCITY_SHIFT: self.velocity_shift,
             Control.RUN: Const(0, state),
         }
-        register = Array([values[control] for control in Control])[index[: (len(Control) - 1).bit_length()]]
-        for k in range(READ_LATENCY + 1):
-            register_next = Signal(state, name=f"register_{k}")
-            m.d.sync += register_next.eq(register)
-            register = register_next
-        return register
+        return [values[control] for control in Control]
 
 
 def word_of(region: Region) -> str:

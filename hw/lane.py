@@ -9,8 +9,10 @@ from golden.graph import AXES
 
 from .accumulator import WRITTEN, Accumulator
 from .blocks.memory import READ_LATENCY, BlockRam, LutRam
+from .choice import choose
 from .delay import DelayLines
 from .edge import EdgeDatapath, EdgeProcessor
+from .host import CHOICE
 from .operations import shape
 from .parameters import Parameters
 
@@ -182,10 +184,10 @@ class Lane(wiring.Component):
             with self._m.If(self.host):
                 self._m.d.comb += ram.address.eq(self.host_index)
             words.append(ram.data)
-        with self._m.Switch(self.host_field):
-            for number, word in enumerate(words):
-                with self._m.Case(number):
-                    self._m.d.comb += self.host_material.eq(word)
+        cycles = READ_LATENCY - 1 + CHOICE  # a small memory is quick, but there are many of them
+        self._m.d.comb += self.host_material.eq(
+            choose(self._m, self._lines, words, self.host_field, cycles=cycles, name="material_word", ahead=1)
+        )
 
     def _sums(self):
         p, announce = self.parameters, self._ready("pull_x") - READ_LATENCY

@@ -113,38 +113,52 @@ def round_half_up(wire, node, x):
 
 
 def shift_right(wire, node, x, count):
-    """Rounds and saturates ``x * 2**-count``; second value: the fault."""
-    source, target = node.operands[0].fmt, node.fmt
-    x = x << 1 + max(0, target.frac_bits - source.frac_bits)  # one bit more than the result, to round with
-    drop = max(0, source.frac_bits - target.frac_bits)
-    bits = (len(x) - 1).bit_length()
-    amount = count[: min(bits, len(count))]
-    left = negative(count)
-    beyond = left if never(left) else left & x.any()
-    far = ~left & count[bits:].any() if bits < len(count) else Const(0)  # so far that it leaves nothing
-    for bit in reversed(range(3, len(amount))):
-        x = wire(Mux(amount[bit], x >> (1 << bit), x))
-    x, amount, far, beyond = yield x, amount[:3], far, beyond
-    for bit in reversed(range(len(amount))):
-        x = wire(Mux(amount[bit], x >> (1 << bit), x))
-    x = either(far, Const(0, x.shape()), x) >> drop
-    x, beyond, below = yield x, beyond, Const(0) if never(beyond) else negative(x)
+    """Rounds and saturates ``x * 2**-count``, the count as `shift_count` gives it; second value: the fault."""
+    target, left = node.fmt, count[-1]
+    drop = max(0, node.operands[0].fmt.frac_bits - target.frac_bits)
+    x = x << _grown(node)
+    beyond = left & x.any() if node.operands[1].fmt.signed else Const(0)
+    below = Const(0) if never(beyond) else negative(x)
+    for bit in reversed(range(len(count) - 1)):
+        x = wire(Mux(count[bit], x >> (1 << bit), x))
+    x, beyond, below = yield x >> drop, beyond, below
     result, fault = _saturate(target, wire((x + 1) >> 1), x >> 1)
     extreme = either(below, Const(target.raw_min, shape(target)), Const(target.raw_max, shape(target)))
     yield either(beyond, extreme, result), fault if never(beyond) else fault | beyond
 
 
+def shift_count(node, count):
+    """What a right shift makes of its count, which may be known earlier than the number: how far, in bits enough to
+    leave nothing of any number, and whether to the left."""
+    source = node.operands[0].fmt
+    bits = (source.width + _grown(node)).bit_length()
+    left = negative(count)
+    amount = count[: min(bits, len(count))]
+    if bits < len(count):
+        amount |= (~left & count[bits:].any()).replicate(bits)
+    return Cat(amount[:bits], left)
+
+
+def _grown(node) -> int:
+    """Places that a number gets before its right shift: one bit more than the result, to round with."""
+    return 1 + max(0, node.fmt.frac_bits - node.operands[0].fmt.frac_bits)
+
+
 def _saturate(target: Q, rounded, floor):
-    """(result, fault): see `golden.qarray.QArray.to`."""
-    result, faults = rounded, []
-    if not never(above := _above(target, rounded)):
-        result = Mux(above, Const(target.raw_max, shape(target)), result)
-    if not never(above := _above(target, floor)):
-        faults.append(above)
-    if not never(below := _below(target, rounded)):
-        faults.append(below)
-        result = Mux(below, Const(target.raw_min, shape(target)), result)
-    return result, functools.reduce(operator.or_, faults) if faults else Const(0)
+    """(result, fault): see `golden.qarray.QArray.to`. What is below the range is its end whether it is rounded up or
+    not, and a number within it can only be rounded to its upper end: so the carries are awaited but once."""
+    above, below = _above(target, floor), _below(target, floor)
+    over = Const(0)
+    if rounded is not floor and not never(_above(target, rounded)):
+        over = ~negative(floor) & rounded[target.width - target.signed]
+    result = either(any_of(above, over), Const(target.raw_max, shape(target)), rounded)
+    result = either(below, Const(target.raw_min, shape(target)), result)
+    return result, any_of(above, _below(target, rounded))
+
+
+def any_of(*bits: Value) -> Value:
+    """``|``, without what is known to be 0."""
+    return functools.reduce(operator.or_, [bit for bit in bits if not never(bit)] or [Const(0)])
 
 
 def _above(target: Q, value: Value) -> Value:
@@ -179,7 +193,7 @@ def step_count(node) -> int:
     """Steps of a node's operation."""
     if node.kind == "sum":
         return next(steps for steps in itertools.count(1) if 3**steps >= len(node.operands))
-    return {"lead": 2, "shift_right": 3}.get(node.kind, 1)
+    return {"lead": 2, "shift_right": 2}.get(node.kind, 1)
 
 
 def field(node, x):

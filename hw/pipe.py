@@ -9,10 +9,16 @@ from golden.graph import Graph, Node
 from .blocks.multiplier import Multiplier
 from .cost import Cost
 from .delay import DelayLines
-from .operations import STEPS, field, never, shape, step_count
+from .operations import STEPS, field, never, shape, shift_count, step_count
 
 WIRES = {"scale", "field", "part"}
 """Operations that are only another reading of the same bits."""
+
+CARRIES = {"add", "sub", "sum", "less"}
+"""Operations that are a carry chain."""
+
+FAULT_LATENCY = 1
+"""Cycles from a value to its fault."""
 
 
 class Schedule:
@@ -90,18 +96,31 @@ class Schedule:
         )
         return min(uses, default=self.latency)
 
+    def known(self, node: Node, cycle: int) -> bool:
+        """Whether a node has its value in a cycle, or has had it before."""
+        if node.kind in WIRES:
+            return self.known(node.operands[0], cycle)
+        if node.kind == "const" or (node.kind == "input" and node.name in self._static):
+            return True
+        first = self.arrival.get(node.name, self.cycle[node]) if node.kind == "input" else self.cycle[node]
+        return first <= cycle
+
     def stages(self) -> list[tuple[str, str, int, int]]:
         """(name, operation, first cycle, cycle of the result) of each operation that takes time."""
         return [(n.name, n.kind, self.start[n], self.cycle[n]) for n in self.graph.nodes if n in self.start]
 
 
 def registered(operand: Node, user: Node) -> int:
-    """Cycles that an operand waits in a register for its user: one where a rounded number is to be added to another,
-    so that two carry chains are not in one cycle."""
+    """Cycles that an operand waits in a register for its user: one where a rounded number is to be added, compared or
+    rounded once more, so that two carry chains are not in one cycle."""
     while operand.kind in WIRES:
         operand = operand.operands[0]
-    rounds = operand.kind == "round" and operand.operands[0].fmt.frac_bits > operand.fmt.frac_bits
-    return int(rounds and user.kind in {"add", "sub", "sum"})
+    return int(rounds(operand) and (user.kind in CARRIES or rounds(user)))
+
+
+def rounds(node: Node) -> bool:
+    """Whether it needs a carry chain: where no bits are dropped, nothing is rounded."""
+    return node.kind == "round" and node.operands[0].fmt.frac_bits > node.fmt.frac_bits
 
 
 class Pipe:
@@ -121,7 +140,7 @@ class Pipe:
     Attributes
     ----------
     faults : dict of str to Value
-        1 whenever a fault of that name happens.
+        1 `FAULT_LATENCY` cycles after a fault of that name has happened.
     """
 
     def __init__(self, m: Module, schedule: Schedule, inputs, valid, tables=None):
@@ -167,7 +186,7 @@ class Pipe:
 
     def _emit(self, node: Node):
         start, done = self._schedule.start[node], self._schedule.cycle[node]
-        operands = [self.at(operand, start) for operand in node.operands]
+        operands = [self._operand(node, number, start) for number in range(len(node.operands))]
         if node.kind == "mul":
             multiplier = Multiplier(*(shape(operand.fmt) for operand in node.operands), registers=done - start)
             self._m.submodules[node.name] = multiplier
@@ -180,6 +199,19 @@ class Pipe:
             if fault:
                 self._report(node.fmt.name, fault[0], done)
         self._results[node] = result
+
+    def _operand(self, node, number, start):
+        """In the operation's first cycle. A count is made ready for its shift, with a register behind it where it is
+        known a cycle before."""
+        if (node.kind, number) != ("shift_right", 1):
+            return self.at(node.operands[number], start)
+        count = node.operands[1]
+        if not self._schedule.known(count, start - 1):
+            return shift_count(node, self.at(count, start))
+        ready = shift_count(node, self.at(count, start - 1))
+        register = Signal(len(ready), name=f"{node.name}_count", reset_less=True)
+        self._m.d.sync += register.eq(ready)
+        return register
 
     def _steps(self, node, operands):
         """The operation's values, the registers that it costs behind the last of its steps."""
@@ -221,5 +253,6 @@ class Pipe:
     def _report(self, name, bit, cycle):
         reports = self._faults.setdefault(name, [])
         if not never(bit):
-            reports.append(bit & self.valid(cycle))
+            reports.append(Signal(name=f"{name.replace(' ', '_')}_reported_{len(reports)}"))
+            self._m.d.sync += reports[-1].eq(bit & self.valid(cycle))
 

@@ -48,9 +48,14 @@ class NodeDatapath:
         return fault_names(self.graph)
 
     @property
+    def done(self) -> int:
+        """The cycle in which all results, rounded, are in registers: from there they go far."""
+        return self.schedule.latency + 1
+
+    @property
     def latency(self) -> int:
         """Cycles from the issue of a node to its new state."""
-        return READ_LATENCY + self.schedule.latency
+        return READ_LATENCY + self.done
 
 
 class NodeUpdater(wiring.Component):
@@ -73,7 +78,8 @@ class NodeUpdater(wiring.Component):
     fault : Out
         One bit for each name in ``faults``.
     host_* : In / Out
-        Reads and writes of the host, only while no node is under way; see `hw.host`.
+        Reads and writes of the host, only while no node is under way; see `hw.host`. A state that is written comes to
+        ``update_*`` a cycle later.
     """
 
     def __init__(self, parameters: Parameters):
@@ -182,35 +188,43 @@ class NodeUpdater(wiring.Component):
         return data.as_signed() if q.signed else data
 
     def _write_back(self, pipe, memories):
-        m, done = self._m, self.schedule.latency
+        m, done = self._m, self.datapath.done
+        valid, row = self._later(self.valid, done), self._later(self.row, done)
+
+        def written(ram, name):
+            m.d.comb += [
+                ram.write.eq(valid),
+                ram.write_address.eq(row),
+                ram.write_data.eq(pipe.output(name, done)),
+            ]
+
         for quantity, result in RESULTS.items():
             for axis in AXES:
-                ram = memories[f"{quantity}_{axis}"]
-                m.d.comb += [
-                    ram.write.eq(self._later(self.valid, done)),
-                    ram.write_address.eq(self._later(self.row, done)),
-                    ram.write_data.eq(pipe.output(f"{result}_{axis}", done)),
-                ]
+                written(memories[f"{quantity}_{axis}"], f"{result}_{axis}")
         for number, word in enumerate(NODE_WORDS):
             quantity, axis = word.split("_")
             base = memories[f"{quantity}_base_{axis}"]
             strobe = self.host_write_state[number]
-            m.d.comb += [
-                self.update[number].eq(Mux(self.host, strobe, self._later(self.valid, done))),
-                getattr(self, f"update_{word}").eq(Mux(self.host, self.host_data, pipe.output(word, done))),
-                getattr(self, f"host_{word}").eq(base.data),
-            ]
+            self._update(number, word, strobe, pipe.output(word, done - 1))
+            m.d.comb += getattr(self, f"host_{word}").eq(base.data)
             self._host_writes(base, strobe)
             if quantity == "v":
                 self._host_writes(memories[word], strobe)
-        m.d.comb += self.update_row.eq(Mux(self.host, self.host_index, self._later(self.row, done)))
+        with m.If(self.host):
+            m.d.sync += self.update_row.eq(self.host_index)
+        with m.Else():
+            m.d.sync += self.update_row.eq(self._later(self.row, done - 1))
         for axis in AXES:
             force = BlockRam(width=self.parameters.formats.state, depth=self.parameters.node_rows)
             m.submodules[f"force_{axis}"] = force
-            m.d.comb += [
-                force.write.eq(self._later(self.valid, done)),
-                force.write_address.eq(self._later(self.row, done)),
-                force.write_data.eq(pipe.output(f"force_{axis}", done)),
-                force.address.eq(self.host_index),
-                getattr(self, f"host_force_{axis}").eq(force.data),
-            ]
+            written(force, f"force_{axis}")
+            m.d.comb += [force.address.eq(self.host_index), getattr(self, f"host_force_{axis}").eq(force.data)]
+
+    def _update(self, number, word, strobe, value):
+        """To the lanes' copies of the nodes, from registers; the host's words go the same way."""
+        late = self.datapath.done - 1
+        target = getattr(self, f"update_{word}")
+        with self._m.If(self.host):
+            self._m.d.sync += [self.update[number].eq(strobe), target.eq(self.host_data)]
+        with self._m.Else():
+            self._m.d.sync += [self.update[number].eq(self._later(self.valid, late)), target.eq(value)]

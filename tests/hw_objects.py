@@ -18,7 +18,7 @@ from golden.qarray import QArray
 from hw.core import Core
 from hw.cost import Cost
 from hw.operations import shape
-from hw.pipe import Pipe, Schedule
+from hw.pipe import FAULT_LATENCY, Pipe, Schedule
 
 
 def simulate(component, *benches):
@@ -84,7 +84,7 @@ def stream(dut, inputs: dict[str, np.ndarray], outputs, gaps=None) -> dict[str, 
 
     async def collect(ctx):
         due = set(starts)
-        for cycle in range(starts[-1] + dut.latency + 1):
+        for cycle in range(starts[-1] + dut.latency + FAULT_LATENCY + 1):
             if cycle - dut.latency in due:
                 for name in outputs:
                     results[name].append(ctx.get(getattr(dut, name)))

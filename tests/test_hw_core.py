@@ -154,4 +154,4 @@ def test_an_edge_whose_words_come_back_too_late_is_refused():
     """Late for its next stage, or for the host who reads them after the last."""
     core_to_ask(Parameters(cost=Cost(less=7)))
     refused(lambda: Core(Parameters(cost=Cost(less=8))),
-            "the edge's base must be written within 78 cycles, not after 79")
+            "the edge's base must be written within 79 cycles, not after 80")

@@ -90,7 +90,7 @@ def test_a_run_shuts_the_door_at_once(name, later):
             ctx.set(dut.write, 1 if cycle == 0 else write)
             ctx.set(dut.address, control(Control.RUN) if cycle == 0 else address)
             ctx.set(dut.write_data, 5 if cycle == 0 else data)
-            ctx.set(dut.busy, cycle >= 3)  # the sequencer's answer to start
+            ctx.set(dut.busy, cycle >= 4)  # the sequencer's answer to start
             if ctx.get(dut.answer):
                 errors.append(ctx.get(dut.error))
             await port.cycle(ctx)

@@ -18,7 +18,7 @@ from golden.rk4 import RK4
 from golden.tables import Tables, inverse_table
 from hw.cost import Cost
 from hw.edge import EdgeDatapath, EdgeProcessor
-from hw.pipe import WIRES, Schedule
+from hw.pipe import FAULT_LATENCY, WIRES, Schedule
 
 OUTPUTS = ["pull", "base_next", "ratio_next", "total_next"]
 TABLES = 2
@@ -98,7 +98,7 @@ def traffic(dut: EdgeProcessor, values, damper, gaps, rng):
     async def bench(ctx):
         await load(ctx)
         ctx.set(dut.velocity_shift, SHIFT)
-        for cycle in range(starts[-1] + max(ready.values()) + 1):
+        for cycle in range(starts[-1] + max(ready.values()) + FAULT_LATENCY + 1):
             ctx.set(dut.valid, cycle in item_at)
             for name, late in arrival.items():
                 item = item_at.get(cycle - late)
@@ -128,7 +128,7 @@ def test_the_edge_processor_is_the_model(fmt, cost, rng, monkeypatch):
     outputs, starts, faults = traffic(EdgeProcessor(datapath), values, damper, gaps, rng)
     for name, raw in model.items():
         assert outputs[name] == raw, name
-    assert faults == {(starts[item] + cycle, name) for cycle, name, items in cycles for item in items}
+    assert faults == {(starts[item] + cycle + FAULT_LATENCY, name) for cycle, name, items in cycles for item in items}
     assert counts == {name: sum(len(items) for _, other, items in cycles if other == name) for name in counts}
     assert len(counts) >= 6 and all(len(set(raw)) > count / 16 for raw in model.values())
 

@@ -66,11 +66,11 @@ class Bench:
             ctx.set(strobe, 1 << bit)
             ctx.set(self.dut.host_index, index)
             ctx.set(self.dut.host_data, int(value))
-            if strobe is self.dut.host_write_state:  # the lanes' copies see it too
+            await ctx.tick()
+            if strobe is self.dut.host_write_state:  # the lanes' copies see it too, from registers
                 word = NODE_WORDS[bit]
                 assert ctx.get(self.dut.update) == 1 << bit and ctx.get(self.dut.update_row) == index
                 assert ctx.get(getattr(self.dut, f"update_{word}")) == value
-            await ctx.tick()
         ctx.set(strobe, 0)
 
     async def load(self, ctx):
