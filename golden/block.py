@@ -21,12 +21,14 @@ def normalise(vector, operand: int):
 def magnitude(x, operand: int):
     """``|x|``, its mantissa in [1/2, 1) and the shift: ``|x| = mantissa * 2**(x.fmt.int_bits - 1 - shift)``.
 
-    The shift is that of ``x``, so that it is known as soon as ``|x|`` is; it makes a power of two below 0 a mantissa of
-    1, which saturates to the one before.
+    The mantissa has the leading bits as they are, not rounded: what follows needn't wait for a carry. The shift is that
+    of ``x``, so that it is known as soon as ``|x|`` is; it makes a power of two below 0 a mantissa of 1, which
+    saturates to the one before.
     """
-    size = abs(x)
-    shift = x.lead([x], x.fmt.width - 1 - operand)
-    return size, size.scale(1 - x.fmt.int_bits).to(unsigned(0, operand), left=shift), shift
+    size, below = abs(x), x.fmt.width - 1 - operand
+    shift = x.lead([x], below)
+    shifted = size.scale(1 - x.fmt.int_bits).to(unsigned(1, x.fmt.width - 1), left=shift)
+    return size, shifted.field(below, unsigned(1, operand)).to(unsigned(0, operand)), shift
 
 
 def difference(a, b):

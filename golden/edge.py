@@ -119,16 +119,17 @@ def damper(fmt, tables, material, size, g, g_shift):
     segment = place.field(fmt.place.frac_bits, fmt.damper_index)
     fraction = place.field(0, fmt.damper_fraction)
     word = tables.damper(material.table, segment)
-    rho_middle = word.rho_value - word.rho_slope * fraction
-    sigma_middle = word.sigma_value + word.sigma_slope * fraction
+    silent = fmt.mantissa.nameless  # outside its branch the table means nothing, inside it never saturates
+    rho_middle = (word.rho_value - word.rho_slope * fraction).to(silent)
+    sigma_middle = (word.sigma_value + word.sigma_slope * fraction).to(silent)
 
     below, between = size < material.g1, size < material.g2
 
     def branch(low, middle, high):
         return below.select(low, between.select(middle, high))
 
-    rho = branch(material.rho_low, rho_middle, material.rho_high).to(fmt.mantissa)
+    rho = branch(material.rho_low, rho_middle, material.rho_high)
     rho_shift = branch(material.rho_low_shift, word.rho_shift, material.rho_high_shift)
-    sigma = branch(material.sigma_low, sigma_middle, material.sigma_high).to(fmt.mantissa)
+    sigma = branch(material.sigma_low, sigma_middle, material.sigma_high)
     sigma_shift = branch(material.sigma_low_shift, word.sigma_shift, material.sigma_high_shift)
     return locals()

@@ -137,14 +137,18 @@ class Graph:
             for label, node in flatten(name, value):
                 if isinstance(node, Node) and not node.name:
                     node.name = f"{label}_next" if label in self.inputs else label
-        self.outputs = {label: node for name in outputs for label, node in flatten(name, values[name])}
+        self.keep({label: node for name in outputs for label, node in flatten(name, values[name])})
+        self._name_the_rest()
+
+    def keep(self, outputs: dict[str, Node]):
+        """Only what these outputs need, and all inputs and faults."""
+        self.outputs = outputs
         needed = {id(node) for node in (*self.outputs.values(), *self.inputs.values())}
         needed |= {id(node) for _, node in self.faults}
         for node in reversed(self.nodes):
             if id(node) in needed:
                 needed |= {id(operand) for operand in node.operands}
         self.nodes = [node for node in self.nodes if id(node) in needed]
-        self._name_the_rest()
 
     def _name_the_rest(self):
         """An operand without a name of its own is called after what it is for: ``rate_mul``, ``rate_add`` ..."""

@@ -63,7 +63,8 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
     per_octave = next(2**p for p in range(finest, -1, -1) if floor(last * 2**p) - floor(first * 2**p) < segments)
     start = floor(first * per_octave) / per_octave
     used = floor(last * per_octave) - floor(first * per_octave) + 1
-    g = octave_inverse(start + np.arange(segments + 1) / per_octave)
+    middle = fmt.octave_fraction.lsb / 2  # of all |g| that have the same leading bits (`golden.block.magnitude`)
+    g = octave_inverse(start + np.arange(segments + 1) / per_octave + middle)
     words = {}
     for name, curve, sign in (("rho", rho, -1), ("sigma", sigma, 1)):
         value, change = _lines(curve, g[:-1], g[1:])

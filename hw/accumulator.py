@@ -58,7 +58,7 @@ class Accumulator(wiring.Component):
         m = Module()
         # The force under way: k cycles after its announcement
         valid, node, first = [self.valid], [self.node], [self.first]
-        for k in range(1, READ_LATENCY + WRITTEN + 1):
+        for k in range(1, READ_LATENCY + WRITTEN):
             lines = [(valid, "valid"), (node, "node")] + ([(first, "first")] if k < READ_LATENCY else [])
             for line, name in lines:
                 register = Signal.like(line[0], name=f"{name}_{k}", reset_less=name != "valid")
@@ -68,8 +68,10 @@ class Accumulator(wiring.Component):
         # At READ_LATENCY it meets its force. A sum of 1, 2 or 3 cycles ago is not in the word that was read: the latest
         # of them counts. Which it is, is found out a cycle before; then the older ones are already there
         now, recent = READ_LATENCY, range(1, READ_LATENCY + WRITTEN)
-        same = [valid[now - 1 + age] & (node[now - 1 + age] == node[now - 1]) for age in recent]
-        hits = [Signal(name=f"same_{age}") for age in recent]
+        same = [Signal(name=f"same_{age}", reset_less=True) for age in recent]
+        for age, bit in zip(recent, same, strict=True):
+            m.d.sync += bit.eq(valid[now - 2 + age] & (node[now - 2 + age] == node[now - 2]))
+        hits = [Signal(name=f"hit_{age}") for age in recent]
         stored, latest = Signal(reset_less=True), Signal(reset_less=True)
         for number, hit in enumerate(hits):
             m.d.comb += hit.eq(~first[now - 1] & same[number] & ~Cat(same[:number]).any())

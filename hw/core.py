@@ -16,8 +16,8 @@ from .edge import EdgeDatapath
 from .fetch import Fetch
 from .fields import stage_bits, unpack
 from .front import Front
-from .host import CHOICE, HostPort, host_signature
-from .lane import NEXT, NODE_WORDS, Lane, latency
+from .host import CHOICE, MEMORY, HostPort, host_signature
+from .lane import COPIED, NEXT, NODE_WORDS, Lane, latency
 from .parameters import Parameters
 from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from .sequencer import Sequencer
@@ -53,7 +53,7 @@ class Core(wiring.Component):
     def _check(self):
         """An edge's own words must be back before its nodes are: then it may come again, or the run is over."""
         datapath = self.datapath
-        loop = latency(datapath) + self.updater.latency
+        loop = latency(datapath) + self.updater.latency + COPIED
         for word, output in NEXT.items():
             written = READ_LATENCY + datapath.ready(output)
             if written > loop:
@@ -71,6 +71,8 @@ class Core(wiring.Component):
             m.submodules[f"lane{number}"] = lane = self._make_lane(p, self.datapath)
             self._lanes.append(lane)
 
+        self._index, self._data = Signal.like(self._host.index), Signal.like(self._host.data)
+        m.d.sync += [self._index.eq(self._host.index), self._data.eq(self._host.data)]
         self._idle = Signal()
         m.d.comb += [self._idle.eq(~self._sequencer.busy), self.busy.eq(self._sequencer.busy)]
         self._rows()
@@ -96,7 +98,7 @@ class Core(wiring.Component):
         self._m.d.comb += [
             ram.address.eq(Mux(self._idle, host_address, fetch_address)),
             ram.write_address.eq(host_address),
-            ram.write_data.eq(self._host.data),
+            ram.write_data.eq(self._data),
         ]
         return ram
 
@@ -118,7 +120,7 @@ class Core(wiring.Component):
         ]
         words = len(fetch.word)
         done, cycles = {
-            "row": ("row_summed", latency(self.datapath) - 1), "node": ("node_updated", self.updater.latency),
+            "row": ("row_summed", latency(self.datapath) - 1), "node": ("node_updated", self.updater.latency + COPIED),
         }[name]
         take = getattr(sequencer, f"{name}_take")
         for port, value in ((done, take), (f"{done}_last", take & getattr(sequencer, f"{name}_last"))):
@@ -134,7 +136,7 @@ class Core(wiring.Component):
         m.submodules.row_fetch = fetch = Fetch(index_bits=p.row_bits, width=width * p.lanes)
         words = []
         for number in range(p.lanes):
-            ram = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, host.index)
+            ram = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._index)
             m.d.comb += ram.write.eq(self._strobe(Region.EDGE, 0, number))
             words.append(ram.data)
         self._edge_entries = words
@@ -170,7 +172,7 @@ class Core(wiring.Component):
         record = records.node_entry()
         width = records.width(record)
         m.submodules.node_fetch = fetch = Fetch(index_bits=p.node_row_bits, width=width * p.updates)
-        row, column = p.node_place(host.index)
+        row, column = p.node_place(self._index)
         self._node_entries = []
         for number in range(p.updates):
             ram = self._entries(f"node_entries{number}", record, p.node_rows, fetch.address, row)
@@ -216,30 +218,33 @@ class Core(wiring.Component):
                         self._m.d.comb += getattr(updater, f"sum{bank}_{axis}").eq(total)
 
     def _strobe(self, region, word, lane=None):
+        """A write of the host to such a word, from a register: with `_index` and `_data`."""
         host = self._host
         here = host.strobe[region] & (host.word == word)
-        return here if lane is None else here & (host.lane == lane)
+        strobe = Signal(name=f"write_{region.name.lower()}_{word}" + ("" if lane is None else f"_{lane}"))
+        self._m.d.sync += strobe.eq(here if lane is None else here & (host.lane == lane))
+        return strobe
 
     def _host_side(self):
         m, host, p = self._m, self._host, self.parameters
         words = Map(p).words(Region.NODE)
-        row, column = p.node_place(host.index)
+        row, column = p.node_place(self._index)
 
         def strobes(names, number):
             return Cat(self._strobe(Region.NODE, words.index(name)) & (column == number) for name in names)
 
-        def chosen(words, index, name, ahead=READ_LATENCY):
+        def chosen(words, index, name, ahead=MEMORY):
             return choose(m, self._lines, words, index, cycles=CHOICE, name=name, ahead=ahead)
 
         def then_chosen(words, index, name):
-            return chosen(words, index, name, ahead=READ_LATENCY + CHOICE)
+            return chosen(words, index, name, ahead=MEMORY + CHOICE)
 
         nodes = []
         for number, (updater, entry) in enumerate(zip(self.updaters, self._node_entries, strict=True)):
             m.d.comb += [
                 updater.host.eq(self._idle),
                 updater.host_index.eq(row),
-                updater.host_data.eq(host.data),
+                updater.host_data.eq(self._data),
                 updater.host_write_state.eq(strobes(NODE_STATE, number)),
                 updater.host_write_load.eq(strobes(NODE_LOAD, number)),
                 updater.host_write_mass.eq(strobes(["inverse_mass"], number)),
@@ -253,8 +258,9 @@ class Core(wiring.Component):
         for number, (port, entry) in enumerate(zip(self._lanes, self._edge_entries, strict=True)):
             m.d.comb += [
                 port.host.eq(self._idle),
-                port.host_index.eq(host.index),
-                port.host_data.eq(host.data),
+                port.host_index.eq(self._index),
+                port.host_data.eq(self._data),
+                *(getattr(port, f"host_write_node{n}").eq(strobes(NODE_STATE, n)) for n in range(p.updates)),
                 port.host_write_length.eq(self._strobe(Region.EDGE, 1, number)),
                 port.host_write_ratio.eq(self._strobe(Region.EDGE, 2, number)),
                 port.host_write_table.eq(Cat(self._strobe(Region.TABLE, 0), self._strobe(Region.TABLE, 1))),

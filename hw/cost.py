@@ -12,6 +12,9 @@ from .operations import step_count
 class Cost:
     """Registers behind each kind of operation of `golden.graph` (0: it shares the next operation's cycle).
 
+    Those named in ``more``, as `golden.graph` names them but for a vector's axis, have one more: place and route found
+    the longest ways behind them.
+
     An operation in several steps (`hw.operations`) gets its registers behind its last steps; those that it has more
     than steps follow as a delay. A sum has them behind each addition of three numbers.
 
@@ -33,11 +36,13 @@ class Cost:
     round: int = 0
     shift_right: int = 2
     read: int = READ_LATENCY
+    more: tuple[str, ...] = ("pull", "acceleration")
 
     def of(self, node: Node) -> int:
         """Cycles from a node's operands to its value."""
         registers = getattr(self, node.kind)
-        return registers * step_count(node) if node.kind == "sum" else registers
+        more = node.name in self.more or node.name.rpartition("_")[0] in self.more
+        return (registers * step_count(node) if node.kind == "sum" else registers) + more
 
     def __post_init__(self):
         if self.mul < 2:

@@ -14,7 +14,11 @@ from golden.tables import inverse_table
 from .blocks.memory import BlockRam
 from .cost import Cost
 from .operations import shape
-from .pipe import Pipe, Schedule
+from .pipe import Pipe
+from .schedule import Schedule
+
+PATIENCE = 16
+"""Cycles that an edge's own words may come after its force: its nodes are updated meanwhile."""
 
 
 class EdgeDatapath:
@@ -33,7 +37,8 @@ class EdgeDatapath:
     @cached_property
     def schedule(self):
         late = {name for name in self.graph.inputs if name.startswith(("material_", "edge_", "stage_"))}
-        return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"})
+        prompt = {name for name in self.graph.outputs if name.startswith("pull_")}
+        return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"}, prompt=prompt, patience=PATIENCE)
 
     @cached_property
     def faults(self) -> list[str]:
@@ -43,7 +48,7 @@ class EdgeDatapath:
     def ready(self, output: str) -> int:
         """The cycle in which an output is valid, counted from the cycle of the nodes; from a register in any case."""
         node = self.graph.outputs[output]
-        return self.schedule.cycle[node] + (not self.cost.of(node))
+        return self.schedule.cycle[node] + (self.schedule.start[node] == self.schedule.cycle[node])
 
 
 class EdgeProcessor(wiring.Component):

@@ -53,8 +53,9 @@ class Fetch(wiring.Component):
         under_way = Signal(range(depth + 1))  # entries asked for and not yet taken
         ask = Signal()
         m.d.comb += ask.eq((under_way != depth) & ~self.flush)
-        last = Signal()
-        m.d.comb += last.eq(self.address + 1 == self.count)
+        last, end = Signal(), Signal(len(self.address))  # the count stays as it is while entries are read
+        m.d.sync += end.eq(self.count - 1)
+        m.d.comb += last.eq(self.address == end)
         with m.If(self.flush):
             m.d.sync += [self.address.eq(0), under_way.eq(0)]
         with m.Else():

@@ -13,6 +13,7 @@ from .registers import (
     INDEX_BITS,
     LANE_BITS,
     MAGIC,
+    READ_ONLY,
     REGION_BITS,
     VERSION,
     WORD_BITS,
@@ -24,8 +25,14 @@ from .registers import (
 CHOICE = 2
 """Cycles for choosing a word, then a lane, then a region."""
 
-LATENCY = 4 + READ_LATENCY + 3 * CHOICE
+MEMORY = 1 + READ_LATENCY
+"""Cycles from an access to its word: the way to the memories, and theirs."""
+
+LATENCY = 4 + MEMORY + 3 * CHOICE
 """Cycles from a request to its answer: request register, three of decoding, the memory, the choices."""
+
+
+WRITABLE = [register for register in Control if register not in READ_ONLY]
 
 
 def host_signature(state: int) -> dict:
@@ -56,7 +63,7 @@ class HostPort(wiring.Component):
     strobe : Out
         One bit a region: it is a write to that region.
     <region>_word : In
-        What the region's memories hold at the access's address, `READ_LATENCY` + 2 `CHOICE` cycles later.
+        What the region's memories hold at the access's address, `MEMORY` + 2 `CHOICE` cycles later.
     start, steps : Out
     busy, <counters of `hw.registers.COUNTERS`>, steps_done, fault : In
     rows, nodes, velocity_shift : Out
@@ -106,37 +113,37 @@ class HostPort(wiring.Component):
         request, write, index, word, lane, region, data, possible = self._registered(
             m, "judged", request, write, index, word, lane, region, data, possible
         )
-        starts = (region == Region.CONTROL) & write & (index == Control.RUN)
-        anytime = (region == Region.CONTROL) & (~write | (index == Control.FAULTS) | (index == Control.REFUSED))
-        request, write, index, word, lane, region, data, possible, starts, anytime = self._registered(
-            m, "now", request, write, index, word, lane, region, data, Array(possible)[region], starts, anytime
+        controls = region == Region.CONTROL
+        writes = Cat(controls & write & (index == register) for register in WRITABLE)
+        anytime = controls & (~write | (index == Control.FAULTS) | (index == Control.REFUSED))
+        request, write, index, word, lane, region, data, possible, writes, anytime = self._registered(
+            m, "now", request, write, index, word, lane, region, data, Array(possible)[region], writes, anytime
         )
-        allowed = Signal()
-        self._loaded = {Control.ROW_COUNT: Signal(name="rows_loaded"), Control.NODE_COUNT: Signal(name="nodes_loaded")}
-        loaded = Cat(self._loaded.values()).all()  # a count that is written is not 0
-        m.d.comb += allowed.eq(possible & (anytime | ~self.busy & ~self.start) & (~starts | loaded))
-        go = Signal()
+        written = Signal(len(writes))  # a control register, a cycle later
+        starts, starting = (bits[WRITABLE.index(Control.RUN)] for bits in (writes, written))
+        go, allowed, loaded = Signal(), Signal(), Signal(2)  # a count that is written is not 0
+        free = ~self.busy & ~self.start & ~starting
+        m.d.comb += allowed.eq(possible & (anytime | free) & (~starts | loaded.all()))
         m.d.comb += go.eq(request & allowed)
+        for bit, register in zip(loaded, (Control.ROW_COUNT, Control.NODE_COUNT), strict=True):
+            with m.If(go & writes[WRITABLE.index(register)]):
+                m.d.sync += bit.eq(1)
 
         # The access itself, a cycle later; its word and region wait for the memory
+        refused, refuse = Signal(32), Signal()
         m.d.sync += [self.index.eq(index), self.data.eq(data), self.word.eq(word), self.lane.eq(lane)]
         m.d.sync += [self.strobe[r].eq(go & write & (region == r)) for r in Region]
-        control = go & (region == Region.CONTROL)
-        m.d.sync += self.start.eq(go & starts)
-        self._control_writes(m, control & write, index, data)
-
-        refused = Signal(32)
-        m.d.sync += refused.eq(refused + (request & ~allowed))
-        with m.If(control & write & (index == Control.REFUSED)):
-            m.d.sync += refused.eq(0)
+        m.d.sync += [written.eq(Mux(go, writes, 0)), self.start.eq(starting), refuse.eq(request & ~allowed)]
+        m.d.sync += refused.eq(refused + refuse)
+        self._control_writes(m, dict(zip(WRITABLE, written, strict=True)), refused)
 
         lines = DelayLines(m)
-        until_chosen = 1 + READ_LATENCY + 2 * CHOICE
-        register = choose(m, lines, self._registers(refused), index, cycles=until_chosen, name="register")
+        until_chosen = MEMORY + 2 * CHOICE
+        register = choose(m, lines, self._registers(refused), self.index, cycles=until_chosen, name="register")
         words = [register, *(getattr(self, word_of(r)) for r in Region if r != Region.CONTROL), Const(0)]
-        which = lines.later(Mux(allowed, region, len(Region)), until_chosen, name="which")
+        which = lines.later(Mux(allowed, region, len(Region)), 1 + until_chosen, name="which")
         for port, value in ((self.answer, request), (self.error, request & ~allowed)):
-            m.d.comb += port.eq(lines.later(value, until_chosen + CHOICE, name=port.name, reset=True))
+            m.d.comb += port.eq(lines.later(value, 1 + until_chosen + CHOICE, name=port.name, reset=True))
         m.d.comb += self.read_data.eq(choose(m, lines, words, which, cycles=CHOICE, name="read"))
         lines.build()
         return m
@@ -170,18 +177,18 @@ class HostPort(wiring.Component):
         )
         return ~write | writable[index[: (len(Control) - 1).bit_length()]]
 
-    def _control_writes(self, m, write, index, data):
+    def _control_writes(self, m, written, refused):
         for register, target in (
             (Control.ROW_COUNT, self.rows),
             (Control.NODE_COUNT, self.nodes),
             (Control.VELOCITY_SHIFT, self.velocity_shift),
             (Control.RUN, self.steps),
         ):
-            with m.If(write & (index == register)):
-                m.d.sync += target.eq(data)
-                if register in self._loaded:
-                    m.d.sync += self._loaded[register].eq(1)
-        clear = Mux(write & (index == Control.FAULTS), data[: len(self.fault)], 0)
+            with m.If(written[register]):
+                m.d.sync += target.eq(self.data)
+        with m.If(written[Control.REFUSED]):
+            m.d.sync += refused.eq(0)
+        clear = Mux(written[Control.FAULTS], self.data[: len(self.fault)], 0)
         self._sticky = Signal(len(self.fault), name="sticky_faults")
         m.d.sync += self._sticky.eq(self._sticky & ~clear | self.fault)
 
@@ -197,7 +204,7 @@ class HostPort(wiring.Component):
             Control.ROWS: Const(p.rows, state),
             Control.MATERIALS: Const(p.materials, state),
             Control.TABLES: Const(p.tables, state),
-            Control.BUSY: self.busy,
+            Control.BUSY: self.busy | self.start,
             **{counter: getattr(self, name) for counter, name in COUNTERS.items()},
             Control.STEPS_DONE: self.steps_done,
             Control.FAULTS: self._sticky,

@@ -1,6 +1,6 @@
 """A lane: an edge processor, the memories of its edges, its copy of the nodes and its sums of forces."""
 
-from amaranth.hdl import Array, Module
+from amaranth.hdl import Array, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -12,13 +12,17 @@ from .blocks.memory import READ_LATENCY, BlockRam, LutRam
 from .choice import choose
 from .delay import DelayLines
 from .edge import EdgeDatapath, EdgeProcessor
-from .host import CHOICE
+from .host import CHOICE, MEMORY
 from .operations import shape
 from .parameters import Parameters
 
 NODE_WORDS = tuple(f"{quantity}_{axis}" for quantity in "xv" for axis in AXES)
 EDGE_WORDS = ("length", "base", "ratio", "total")
 NEXT = {"base": "base_next", "ratio": "ratio_next", "total": "total_next"}
+
+
+COPIED = 1
+"""Cycles from a node's new state to its copy in a lane's memories: they are far from the node updater."""
 
 
 def latency(datapath: EdgeDatapath) -> int:
@@ -41,7 +45,7 @@ def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
         **{f"stage_{bit}": In(1) for bit in ("first", "last", "half", "double")},
         "velocity_shift": In(shape(fmt.exponent)),
         "update_row": In(p.node_row_bits),
-        **{f"update{n}": In(len(NODE_WORDS)) for n in range(p.updates)},
+        **{f"update{n}": In(1) for n in range(p.updates)},
         **{f"update{n}_{word}": In(shape(node_formats[word[0]])) for n in range(p.updates) for word in NODE_WORDS},
         "sum_row": In(p.node_row_bits),
         **{f"sum{n}_{end}_{axis}": Out(shape(fmt.accumulator)) for n, end, axis in ends},
@@ -49,6 +53,7 @@ def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
         "host": In(1),
         "host_index": In(p.index_bits),
         "host_data": In(p.formats.state),
+        **{f"host_write_node{n}": In(len(NODE_WORDS)) for n in range(p.updates)},
         "host_write_length": In(1),
         "host_write_ratio": In(1),
         "host_write_material": In(len(materials)),
@@ -76,13 +81,14 @@ class Lane(wiring.Component):
     velocity_shift : In
         Static.
     update_row, update<n>, update<n>_x_*, update<n>_v_* : In
-        The new states of the nodes of a row; ``update<n>`` has a bit for each of `NODE_WORDS`.
+        The new states of the nodes of a row, if ``update<n>``; in the lane's memories `COPIED` cycles later.
     sum_row : In, sum<n>_i_*, sum<n>_j_* : Out
         The forces summed on a row's nodes as first and as second ends of edges, `READ_LATENCY` cycles later.
     fault : Out
         One bit for each name in ``datapath.faults``.
     host_* : In / Out
-        Reads and writes of the host, only while no edge is under way; see `hw.host`.
+        Reads and writes of the host, only while no edge is under way; see `hw.host`. ``host_write_node<n>`` has a bit
+        for each of `NODE_WORDS`.
     """
 
     def __init__(self, parameters: Parameters, datapath: EdgeDatapath):
@@ -122,23 +128,40 @@ class Lane(wiring.Component):
     def _nodes(self):
         """Two copies of the nodes' states, one for each end of an edge."""
         p = self.parameters
+        written, words = self._copied()
         for end in "ij":
             row, column = p.node_place(getattr(self, end))
             column = self._lines.later(column, READ_LATENCY, name=f"{end}_column")
             for number, word in enumerate(NODE_WORDS):
-                target, words = getattr(self._edge, f"{end}_{word}"), []
+                target, found = getattr(self._edge, f"{end}_{word}"), []
                 for n in range(p.updates):
-                    source = getattr(self, f"update{n}_{word}")
-                    ram = BlockRam(width=len(source), depth=p.node_rows)
+                    ram = BlockRam(width=len(words[n, word]), depth=p.node_rows)
                     self._m.submodules[f"node_{end}_{word}_{n}"] = ram
                     self._m.d.comb += [
-                        ram.write.eq(getattr(self, f"update{n}")[number]),
-                        ram.write_address.eq(self.update_row),
-                        ram.write_data.eq(source),
+                        ram.write.eq(written[n][number]),
+                        ram.write_address.eq(written["row"]),
+                        ram.write_data.eq(words[n, word]),
                         ram.address.eq(row),
                     ]
-                    words.append(ram.data)
-                self._m.d.comb += target.eq(Array(words)[column])
+                    found.append(ram.data)
+                self._m.d.comb += target.eq(Array(found)[column])
+
+    def _copied(self):
+        """(row and strobes, words) in registers: the updaters' new states, or what the host writes."""
+        p = self.parameters
+        written = {"row": Signal(p.node_row_bits, name="copied_row", reset_less=True)}
+        words = {}
+        host_row, _ = p.node_place(self.host_index)
+        self._m.d.sync += written["row"].eq(Mux(self.host, host_row, self.update_row))
+        for n in range(p.updates):
+            written[n] = Signal(len(NODE_WORDS), name=f"copied{n}")
+            updates = getattr(self, f"update{n}").replicate(len(NODE_WORDS))
+            self._m.d.sync += written[n].eq(Mux(self.host, getattr(self, f"host_write_node{n}"), updates))
+            for word in NODE_WORDS:
+                update = getattr(self, f"update{n}_{word}")
+                words[n, word] = copied = Signal.like(update, name=f"copied{n}_{word}", reset_less=True)
+                self._m.d.sync += copied.eq(Mux(self.host, self.host_data, update))
+        return written, words
 
     def _edges(self):
         """The edges' own words, each read when the edge processor needs it and written when it is done."""
@@ -185,9 +208,9 @@ class Lane(wiring.Component):
                 self._m.d.comb += ram.address.eq(self.host_index)
             words.append(ram.data)
         cycles = READ_LATENCY - 1 + CHOICE  # a small memory is quick, but there are many of them
-        self._m.d.comb += self.host_material.eq(
-            choose(self._m, self._lines, words, self.host_field, cycles=cycles, name="material_word", ahead=1)
-        )
+        word = choose(self._m, self._lines, words, self.host_field, cycles=cycles, name="material_word",
+                      ahead=MEMORY - READ_LATENCY + 1)
+        self._m.d.comb += self.host_material.eq(word)
 
     def _sums(self):
         p, announce = self.parameters, self._ready("pull_x") - READ_LATENCY

@@ -7,7 +7,7 @@ from .core import Core
 from .edge import EdgeDatapath
 from .front import LATENCY as FRONT_LATENCY
 from .host import LATENCY as HOST_LATENCY
-from .lane import NEXT
+from .lane import COPIED, NEXT
 from .lane import latency as sums_latency
 from .parameters import Parameters
 from .updater import NodeDatapath
@@ -23,7 +23,7 @@ class Latencies:
     @classmethod
     def of(cls, p: Parameters) -> "Latencies":
         edge, node = EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
-        return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + 1 + FRONT_LATENCY)
+        return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + COPIED + 1 + FRONT_LATENCY)
 
 
 def latencies(core: Core) -> list[tuple[str, str, int]]:
@@ -35,7 +35,7 @@ def latencies(core: Core) -> list[tuple[str, str, int]]:
         ("edge", "issue to its force on both nodes", READ_LATENCY + edge.ready("pull_x")),
         ("edge", "issue to the sums that contain its force", sums_latency(edge)),
         ("edge", "issue to its new ratio in the memory", written),
-        ("node", "issue to its new state in the memories", node.latency),
+        ("node", "issue to its new state in the lanes' memories", node.latency + COPIED),
         ("stage", "an edge to the next edge of the same node, at least", loop.edge + loop.node),
         ("host port", "request to answer", HOST_LATENCY),
     ]

@@ -96,7 +96,11 @@ def _leading_zeros(bits: Value) -> Value:
 
 def shift_left(wire, node, x, count):
     """Bits that leave at the top are redundant (`lead`)."""
-    for bit in reversed(range(len(count))):
+    low = len(count) // 2
+    for bit in reversed(range(low, len(count))):
+        x = wire(Mux(count[bit], Cat(Const(0, 1 << bit), x)[: len(x)], x))
+    x, count = yield x, count[:low]
+    for bit in reversed(range(low)):
         x = wire(Mux(count[bit], Cat(Const(0, 1 << bit), x)[: len(x)], x))
     yield (x.as_signed() if node.fmt.signed else x,)
 
@@ -119,7 +123,11 @@ def shift_right(wire, node, x, count):
     x = x << _grown(node)
     beyond = left & x.any() if node.operands[1].fmt.signed else Const(0)
     below = Const(0) if never(beyond) else negative(x)
-    for bit in reversed(range(len(count) - 1)):
+    low = (len(count) - 1) // 2
+    for bit in reversed(range(low, len(count) - 1)):
+        x = wire(Mux(count[bit], x >> (1 << bit), x))
+    x, count, beyond, below = yield x, count[:low], beyond, below
+    for bit in reversed(range(low)):
         x = wire(Mux(count[bit], x >> (1 << bit), x))
     x, beyond, below = yield x >> drop, beyond, below
     result, fault = _saturate(target, wire((x + 1) >> 1), x >> 1)
@@ -193,7 +201,7 @@ def step_count(node) -> int:
     """Steps of a node's operation."""
     if node.kind == "sum":
         return next(steps for steps in itertools.count(1) if 3**steps >= len(node.operands))
-    return {"lead": 2, "shift_right": 2}.get(node.kind, 1)
+    return {"lead": 2, "shift_left": 2, "shift_right": 3}.get(node.kind, 1)
 
 
 def field(node, x):

@@ -1,126 +1,18 @@
-"""From a datapath's graph (`golden.graph`) to a pipeline: registers and latency follow from what operations cost."""
+"""From a datapath's graph (`golden.graph`) to a pipeline: its registers follow from the schedule."""
 
 import itertools
 
 from amaranth.hdl import Cat, Const, Module, Signal
 
-from golden.graph import Graph, Node
+from golden.graph import Node
 
 from .blocks.multiplier import Multiplier
-from .cost import Cost
 from .delay import DelayLines
 from .operations import STEPS, field, never, shape, shift_count, step_count
-
-WIRES = {"scale", "field", "part"}
-"""Operations that are only another reading of the same bits."""
-
-CARRIES = {"add", "sub", "sum", "less"}
-"""Operations that are a carry chain."""
+from .schedule import WIRES, Schedule
 
 FAULT_LATENCY = 1
 """Cycles from a value to its fault."""
-
-
-class Schedule:
-    """The cycle of every node of a graph: as early as its operands allow, or, where none of them comes with the item
-    itself, as late as its users allow.
-
-    A cycle is counted from the one in which the pipeline takes its inputs, so that the latency of an output is its
-    cycle: ``cycle[node]``.
-
-    Parameters
-    ----------
-    graph : Graph
-    cost : Cost
-    late : set of str
-        Inputs that come when they are needed, in cycle ``arrival[name]``: whoever provides them reads a memory then,
-        instead of this pipeline carrying the word along.
-    static : set of str
-        Inputs that do not change while the pipeline works.
-
-    Attributes
-    ----------
-    latency : int
-        Cycles from an item's inputs to the last of its results.
-
-    Raises
-    ------
-    ValueError
-        If a late input is needed before its item comes.
-    """
-
-    def __init__(self, graph: Graph, cost: Cost, *, late=frozenset(), static=frozenset()):
-        self.graph, self.cost, self._late, self._static = graph, cost, late, static
-        self.cycle: dict[Node, int | None] = {}
-        self.start: dict[Node, int] = {}
-        for node in graph.nodes:
-            self.cycle[node] = self._earliest(node)
-        self.latency = max(cycle for cycle in self.cycle.values() if cycle is not None)
-        for node in reversed(graph.nodes):
-            if self.cycle[node] is None and node.kind not in {"const", "input", *WIRES}:
-                self.cycle[node] = self._needed(node)
-                # Here is time for a register behind each of an operation's steps
-                steps = step_count(node)
-                self.start[node] = self.cycle[node] - max(cost.of(node), steps if steps > 1 else 0)
-        self.arrival = {name: self._needed(graph.inputs[name]) for name in sorted(late)}
-        for name, cycle in self.arrival.items():
-            if cycle < 0:
-                raise ValueError(f"{name} must be needed after its item has come, not {-cycle} cycles before")
-
-    def _earliest(self, node: Node) -> int | None:
-        """None where no operand comes with the item."""
-        if node.kind == "const" or (node.kind == "input" and node.name in self._static | self._late):
-            return None
-        if node.kind == "input":
-            return 0
-        ready = [
-            self.cycle[operand] + registered(operand, node)
-            for operand in node.operands
-            if self.cycle[operand] is not None
-        ]
-        if not ready or node.kind in WIRES:
-            return max(ready, default=None)
-        self.start[node] = max(ready)
-        return self.start[node] + self.cost.of(node)
-
-    def _needed(self, node: Node) -> int:
-        """The first cycle in which an operation takes this node, directly or through wires; at the latest the last."""
-        readings = {node}
-        for other in self.graph.nodes:
-            if other.kind in WIRES and other.operands[0] in readings:
-                readings.add(other)
-        uses = (
-            start - registered(operand, other)
-            for other, start in self.start.items()
-            for operand in readings & set(other.operands)
-        )
-        return min(uses, default=self.latency)
-
-    def known(self, node: Node, cycle: int) -> bool:
-        """Whether a node has its value in a cycle, or has had it before."""
-        if node.kind in WIRES:
-            return self.known(node.operands[0], cycle)
-        if node.kind == "const" or (node.kind == "input" and node.name in self._static):
-            return True
-        first = self.arrival.get(node.name, self.cycle[node]) if node.kind == "input" else self.cycle[node]
-        return first <= cycle
-
-    def stages(self) -> list[tuple[str, str, int, int]]:
-        """(name, operation, first cycle, cycle of the result) of each operation that takes time."""
-        return [(n.name, n.kind, self.start[n], self.cycle[n]) for n in self.graph.nodes if n in self.start]
-
-
-def registered(operand: Node, user: Node) -> int:
-    """Cycles that an operand waits in a register for its user: one where a rounded number is to be added, compared or
-    rounded once more, so that two carry chains are not in one cycle."""
-    while operand.kind in WIRES:
-        operand = operand.operands[0]
-    return int(rounds(operand) and (user.kind in CARRIES or rounds(user)))
-
-
-def rounds(node: Node) -> bool:
-    """Whether it needs a carry chain: where no bits are dropped, nothing is rounded."""
-    return node.kind == "round" and node.operands[0].fmt.frac_bits > node.fmt.frac_bits
 
 
 class Pipe:
@@ -243,7 +135,7 @@ class Pipe:
     def _register(self, names, values):
         registers = []
         for name, value in zip(names, values, strict=True):
-            if isinstance(value, Const):
+            if isinstance(value, Const) or not len(value):
                 registers.append(value)
                 continue
             registers.append(Signal(value.shape(), name=name, reset_less=True))

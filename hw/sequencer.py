@@ -1,6 +1,6 @@
 """The wavefront: which row of edges and which node may go next. No barrier between stages or steps."""
 
-from amaranth.hdl import Module, Signal
+from amaranth.hdl import Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -22,6 +22,7 @@ class Sequencer(wiring.Component):
     start : In(1), steps : In
         Begin a run of ``steps`` steps, at least 1; only while not ``busy``.
     busy : Out(1), steps_done : Out
+        The steps are counted a cycle late.
     row_valid, row_may, row_last, row_nodes : In(1)
         A row stands in front (`hw.front.Front`); it was found ready; it is its list's last; all its nodes are among the
         first ``updated`` of the list.
@@ -85,16 +86,11 @@ class Sequencer(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         last_stage = RK4.stages - 1
-        rows_left = Signal(len(self.steps))
-        nodes_left = Signal(len(self.steps))
-        rows_over = Signal()
-        nodes_over = Signal()
+        rows_over, nodes_over = Signal(), Signal()
         row_lead = Signal(2)  # stages that the front row is ahead of the updates
         sum_lead = Signal(2)  # stages that the sums are ahead of the front node
         summed = Signal(len(self.node_need))
         update_stage = Signal(STAGE_BITS)
-        steps_left = Signal(len(self.steps))
-        last_step = Signal()  # a step is longer than the cycle that it takes to see it
 
         # Behind a list's last entry comes its first, of the next stage
         row_turns, node_turns = self.row_valid & self.row_last, self.node_valid & self.node_last
@@ -123,14 +119,6 @@ class Sequencer(wiring.Component):
             row_lead.eq(row_lead + row_stage_done - update_stage_done),
             sum_lead.eq(sum_lead + sum_stage_done - node_stage_done),
         ]
-        with m.If(row_stage_done):
-            m.d.sync += self.row_stage.eq(self.row_stage + 1)
-            with m.If(self.row_stage == last_stage):
-                m.d.sync += [self.row_stage.eq(0), rows_left.eq(rows_left - 1), rows_over.eq(rows_left == 1)]
-        with m.If(node_stage_done):
-            m.d.sync += self.node_stage.eq(self.node_stage + 1)
-            with m.If(self.node_stage == last_stage):
-                m.d.sync += [self.node_stage.eq(0), nodes_left.eq(nodes_left - 1), nodes_over.eq(nodes_left == 1)]
         with m.If(self.row_summed):
             m.d.sync += summed.eq(summed + 1)
             with m.If(sum_stage_done):
@@ -138,17 +126,32 @@ class Sequencer(wiring.Component):
         with m.If(self.node_updated):
             m.d.sync += self.updated.eq(self.updated + 1)
             with m.If(update_stage_done):
-                m.d.sync += [self.updated.eq(0), update_stage.eq(update_stage + 1)]
-                with m.If(update_stage == last_stage):
-                    m.d.sync += [update_stage.eq(0), self.steps_done.eq(self.steps_done + 1)]
-                    m.d.sync += steps_left.eq(steps_left - 1)
-                    with m.If(last_step):
-                        m.d.sync += self.busy.eq(0)
-        m.d.sync += last_step.eq(steps_left == 1)
+                m.d.sync += self.updated.eq(0)
+
+        # A step's last stage is over, of its rows, nodes and updates. The steps are counted a cycle later: each is
+        # longer than the cycles that it takes to see which is the last
+        for name, stage, done in (
+            ("row", self.row_stage, row_stage_done),
+            ("node", self.node_stage, node_stage_done),
+            ("update", update_stage, update_stage_done),
+        ):
+            turn, turned, last = (Signal(name=f"{name}_{what}") for what in ("turn", "turned", "last_step"))
+            left = Signal(len(self.steps), name=f"{name}_steps_left")
+            m.d.comb += turn.eq(done & (stage == last_stage))
+            m.d.sync += [turned.eq(turn), last.eq(left == 1)]
+            with m.If(done):
+                m.d.sync += stage.eq(Mux(turn, 0, stage + 1))
+            with m.If(turned):
+                m.d.sync += left.eq(left - 1)
+            if name == "update":
+                m.d.sync += self.steps_done.eq(self.steps_done + turned)
+            with m.If(self.start):
+                m.d.sync += [turned.eq(0), left.eq(self.steps)]
+            with m.If(turn & last):
+                m.d.sync += {"row": rows_over.eq(1), "node": nodes_over.eq(1), "update": self.busy.eq(0)}[name]
 
         with m.If(self.start):
             m.d.sync += [signal.eq(0) for signal in (self.row_stage, self.node_stage, update_stage, self.updated)]
             m.d.sync += [signal.eq(0) for signal in (row_lead, sum_lead, summed, rows_over, nodes_over)]
             m.d.sync += [self.busy.eq(1), self.steps_done.eq(0)]
-            m.d.sync += [left.eq(self.steps) for left in (rows_left, nodes_left, steps_left)]
         return m

@@ -18,10 +18,15 @@ from .edge import fault_names
 from .lane import NODE_WORDS
 from .operations import shape
 from .parameters import Parameters
-from .pipe import Pipe, Schedule
+from .pipe import Pipe
+from .schedule import Schedule
 
-RESULTS = {"x_base": "x_base_next", "v_base": "v_base_next", "v": "v", "x_total": "x_total", "v_total": "v_total"}
-"""Where a node's memories get their next words from."""
+RESULTS = {"x_base": "x", "v_base": "v", "v": "v", "x_total": "x_total", "v_total": "v_total"}
+"""Where a node's memories get their next words from; a base is written in a step's last stage."""
+
+
+GATHERED = READ_LATENCY + 1
+"""Cycles from the issue of a node to its sums of forces in registers: they come from all lanes."""
 
 
 class NodeDatapath:
@@ -35,12 +40,15 @@ class NodeDatapath:
 
     @cached_property
     def graph(self):
-        return node_graph(self.formats, self.banks)
+        graph = node_graph(self.formats, self.banks)
+        graph.keep({name: node for name, node in graph.outputs.items() if "base_next" not in name})
+        return graph
 
     @cached_property
     def schedule(self):
         late = {name for name in self.graph.inputs if not name.startswith(("pull", "velocity_shift"))}
-        return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"})
+        ahead = GATHERED - READ_LATENCY
+        return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"}, ahead=ahead)
 
     @cached_property
     def faults(self) -> list[str]:
@@ -55,7 +63,7 @@ class NodeDatapath:
     @property
     def latency(self) -> int:
         """Cycles from the issue of a node to its new state."""
-        return READ_LATENCY + self.done
+        return GATHERED + self.done
 
 
 class NodeUpdater(wiring.Component):
@@ -78,8 +86,7 @@ class NodeUpdater(wiring.Component):
     fault : Out
         One bit for each name in ``faults``.
     host_* : In / Out
-        Reads and writes of the host, only while no node is under way; see `hw.host`. A state that is written comes to
-        ``update_*`` a cycle later.
+        Reads and writes of the host, only while no node is under way; see `hw.host`.
     """
 
     def __init__(self, parameters: Parameters):
@@ -98,7 +105,7 @@ class NodeUpdater(wiring.Component):
                 **{f"stage_{bit}": In(1) for bit in ("first", "last", "half", "double")},
                 "velocity_shift": In(shape(fmt.exponent)),
                 **{f"sum{bank}_{axis}": In(shape(fmt.accumulator)) for bank in range(self.banks) for axis in AXES},
-                "update": Out(len(NODE_WORDS)),
+                "update": Out(1),
                 "update_row": Out(parameters.node_row_bits),
                 **{f"update_{word}": Out(shape(update[word[0]])) for word in NODE_WORDS},
                 "fault": Out(len(self.faults)),
@@ -121,13 +128,13 @@ class NodeUpdater(wiring.Component):
         for bit in ("first", "last", "half", "double"):
             name = f"stage_{bit}"
             inputs[name] = self._later(getattr(self, name), self.schedule.arrival[name])
-        mask = self._later(self.mask, 0)
+        mask = self._lines.later(self.mask, READ_LATENCY)
         for bank in range(self.banks):
             for axis in AXES:
                 total = getattr(self, f"sum{bank}_{axis}")
                 name = f"pull{bank}_{axis}"
-                inputs[name] = pull = Signal(total.shape(), name=name)
-                m.d.comb += pull.eq(Mux(mask[bank], total, 0))
+                inputs[name] = pull = Signal(total.shape(), name=name, reset_less=True)
+                m.d.sync += pull.eq(Mux(mask[bank], total, 0))
         memories = self._memories(inputs)
         pipe = Pipe(m, self.schedule, inputs, self._later(self.valid, 0))
         self._write_back(pipe, memories)
@@ -137,8 +144,8 @@ class NodeUpdater(wiring.Component):
         return m
 
     def _later(self, value, cycle: int):
-        """What was issued, when its node is in ``cycle`` of the pipeline; its words are read before cycle 0."""
-        return self._lines.later(value, READ_LATENCY + cycle, reset=value is self.valid)
+        """What was issued, when its node is in ``cycle`` of the pipeline; its sums are gathered before cycle 0."""
+        return self._lines.later(value, GATHERED + cycle, reset=value is self.valid)
 
     def _memory(self, name: str, width: int, arrival: int) -> BlockRam:
         """A word per node, read for ``arrival``, or for the host."""
@@ -191,40 +198,31 @@ class NodeUpdater(wiring.Component):
         m, done = self._m, self.datapath.done
         valid, row = self._later(self.valid, done), self._later(self.row, done)
 
-        def written(ram, name):
+        last = self._later(self.stage_last, done)
+
+        def written(ram, name, when=1):
             m.d.comb += [
-                ram.write.eq(valid),
+                ram.write.eq(valid & when),
                 ram.write_address.eq(row),
                 ram.write_data.eq(pipe.output(name, done)),
             ]
 
         for quantity, result in RESULTS.items():
             for axis in AXES:
-                written(memories[f"{quantity}_{axis}"], f"{result}_{axis}")
+                when = last if "base" in quantity else 1
+                written(memories[f"{quantity}_{axis}"], f"{result}_{axis}", when)
         for number, word in enumerate(NODE_WORDS):
             quantity, axis = word.split("_")
             base = memories[f"{quantity}_base_{axis}"]
             strobe = self.host_write_state[number]
-            self._update(number, word, strobe, pipe.output(word, done - 1))
+            m.d.comb += getattr(self, f"update_{word}").eq(pipe.output(word, done))
             m.d.comb += getattr(self, f"host_{word}").eq(base.data)
             self._host_writes(base, strobe)
             if quantity == "v":
                 self._host_writes(memories[word], strobe)
-        with m.If(self.host):
-            m.d.sync += self.update_row.eq(self.host_index)
-        with m.Else():
-            m.d.sync += self.update_row.eq(self._later(self.row, done - 1))
+        m.d.comb += [self.update.eq(valid), self.update_row.eq(row)]
         for axis in AXES:
             force = BlockRam(width=self.parameters.formats.state, depth=self.parameters.node_rows)
             m.submodules[f"force_{axis}"] = force
             written(force, f"force_{axis}")
             m.d.comb += [force.address.eq(self.host_index), getattr(self, f"host_force_{axis}").eq(force.data)]
-
-    def _update(self, number, word, strobe, value):
-        """To the lanes' copies of the nodes, from registers; the host's words go the same way."""
-        late = self.datapath.done - 1
-        target = getattr(self, f"update_{word}")
-        with self._m.If(self.host):
-            self._m.d.sync += [self.update[number].eq(strobe), target.eq(self.host_data)]
-        with self._m.Else():
-            self._m.d.sync += [self.update[number].eq(self._later(self.valid, late)), target.eq(value)]

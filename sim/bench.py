@@ -7,6 +7,7 @@ import numpy as np
 
 from golden import records
 from hw.edge import EdgeDatapath, EdgeProcessor
+from hw.pipe import FAULT_LATENCY
 from hw.verilog import convert
 
 from .verilated import library, opened
@@ -40,7 +41,7 @@ class EdgeBench:
         del inputs["velocity_shift"]  # the same for a whole batch
         outputs = {name: (node.fmt.width, datapath.ready(name)) for name, node in graph.outputs.items()}
         self.inputs, self.outputs = list(inputs), list(outputs)
-        self._drain = max(datapath.schedule.latency, *map(datapath.ready, graph.outputs)) + 1
+        self._drain = max(datapath.schedule.latency + FAULT_LATENCY, *map(datapath.ready, graph.outputs)) + 1
 
         text = convert(EdgeProcessor(datapath), TOP)
         folder.mkdir(parents=True, exist_ok=True)

@@ -2,8 +2,7 @@
 
 from hw_objects import simulate
 
-from hw.blocks.memory import READ_LATENCY
-from hw.host import CHOICE, LATENCY, HostPort, word_of
+from hw.host import CHOICE, LATENCY, MEMORY, HostPort, word_of
 from hw.parameters import Parameters
 from hw.registers import Control, Map, Region, join
 
@@ -29,7 +28,7 @@ class Port:
     def __init__(self):
         self.dut = HostPort(MAP, FAULTS)
         self.strobes, self.starts = [], 0
-        self._asked = [(0, 0, 0)] * (READ_LATENCY + 2 * CHOICE)
+        self._asked = [(0, 0, 0)] * (MEMORY + 2 * CHOICE)
 
     async def cycle(self, ctx):
         dut = self.dut

@@ -18,7 +18,8 @@ from golden.qarray import QArray
 from hw.core import Core
 from hw.cost import Cost
 from hw.operations import shape
-from hw.pipe import FAULT_LATENCY, Pipe, Schedule
+from hw.pipe import FAULT_LATENCY, Pipe
+from hw.schedule import Schedule
 
 
 def simulate(component, *benches):

@@ -68,8 +68,9 @@ def test_a_magnitude_is_its_mantissa_times_a_power_of_two(rng):
     size, mantissa, shift = magnitude(number(raw, q), operand)
     assert np.array_equal(size.raw, abs(raw))
     value = np.ldexp(mantissa.to_float(), 1 - shift.raw)
-    error = np.abs(value - np.ldexp(abs(raw).astype(float), -35))
-    assert (error <= np.ldexp(1.0, 1 - shift.raw - operand)).all()  # half a step, a whole one where 1 saturates
+    error = np.ldexp(abs(raw).astype(float), -35) - value
+    assert (error >= 0).all()
+    assert (error <= np.ldexp(1.0, 1 - shift.raw - operand)).all()  # a step; exactly one where 1 saturates
     assert ((mantissa.raw >= 1 << operand - 1) | (shift.raw == shift.raw.max())).all()
 
 

@@ -10,7 +10,7 @@ from golden.graph import AXES
 from hw import manifest
 from hw.blocks.memory import READ_LATENCY
 from hw.host import LATENCY
-from hw.lane import latency
+from hw.lane import COPIED, latency
 from hw.parameters import Parameters
 from hw.registers import CONTROL_TEXT, Control, Map, Region
 
@@ -135,7 +135,7 @@ def test_latencies(contents, core):
     assert cycles["host port", "request to answer"] == LATENCY
     assert cycles["block RAM", "address to word"] == READ_LATENCY
     assert cycles["edge", "issue to the sums that contain its force"] == latency(core.datapath)
-    assert cycles["node", "issue to its new state in the memories"] == core.updater.latency
+    assert cycles["node", "issue to its new state in the lanes' memories"] == core.updater.latency + COPIED
     for name, schedule in (("edge", core.datapath.schedule), ("node", core.updater.schedule)):
         pipeline = contents["pipelines"][name]
         assert pipeline["cycles"] == schedule.latency == max(item["to"] for item in pipeline["operations"])

@@ -18,7 +18,8 @@ from golden.rk4 import RK4
 from golden.tables import Tables, inverse_table
 from hw.cost import Cost
 from hw.edge import EdgeDatapath, EdgeProcessor
-from hw.pipe import FAULT_LATENCY, WIRES, Schedule
+from hw.pipe import FAULT_LATENCY
+from hw.schedule import WIRES, Schedule
 
 OUTPUTS = ["pull", "base_next", "ratio_next", "total_next"]
 TABLES = 2

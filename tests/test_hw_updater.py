@@ -67,10 +67,6 @@ class Bench:
             ctx.set(self.dut.host_index, index)
             ctx.set(self.dut.host_data, int(value))
             await ctx.tick()
-            if strobe is self.dut.host_write_state:  # the lanes' copies see it too, from registers
-                word = NODE_WORDS[bit]
-                assert ctx.get(self.dut.update) == 1 << bit and ctx.get(self.dut.update_row) == index
-                assert ctx.get(getattr(self.dut, f"update_{word}")) == value
         ctx.set(strobe, 0)
 
     async def load(self, ctx):
@@ -106,7 +102,7 @@ class Bench:
                 for bank in range(self.nodes.banks):
                     for k, axis in enumerate(AXES):
                         ctx.set(getattr(dut, f"sum{bank}_{axis}"), int(sums[bank, summed, k]))
-            assert ctx.get(dut.update) == (0 if done is None else (1 << len(NODE_WORDS)) - 1)
+            assert ctx.get(dut.update) == (done is not None)
             if done is not None:
                 assert ctx.get(dut.update_row) == done
                 for word in NODE_WORDS:

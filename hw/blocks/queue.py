@@ -1,6 +1,6 @@
-"""A short queue, in lookup tables."""
+"""A short queue: lookup tables behind a register."""
 
-from amaranth.hdl import Module, Signal
+from amaranth.hdl import Module, Mux, Signal
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -47,22 +47,27 @@ class Queue(wiring.Component):
         m = Module()
         m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=())
         write, read = words.write_port(), words.read_port(domain="comb")
-        level = Signal(range(self.depth + 1))
+        level = Signal(range(self.depth + 1))  # words in the memory; one more stands in front of it, in a register
+        moves, waiting, passes = Signal(), Signal(), Signal()
+        store, fetch = Signal(), Signal()
         m.d.comb += [
-            write.en.eq(self.put),
+            moves.eq(~self.valid | self.take),
+            waiting.eq(level != 0),
+            passes.eq(moves & ~waiting),
+            store.eq(self.put & ~passes),
+            fetch.eq(moves & waiting),
+            write.en.eq(store),
             write.data.eq(self.data_in),
-            self.data.eq(read.data),
-            self.valid.eq(level != 0),
         ]
-        for port, moves in ((write, self.put), (read, self.take)):
+        with m.If(moves):
+            m.d.sync += [self.data.eq(Mux(waiting, read.data, self.data_in)), self.valid.eq(waiting | self.put)]
+        for port, steps in ((write, store), (read, fetch)):
             place = Signal(range(self.depth), name="next_in" if port is write else "next_out")
             m.d.comb += port.addr.eq(place)
+            m.d.sync += place.eq(place + steps)
             with m.If(self.flush):
                 m.d.sync += place.eq(0)
-            with m.Elif(moves):
-                m.d.sync += place.eq(place + 1)
+        m.d.sync += level.eq(level + store - fetch)
         with m.If(self.flush):
-            m.d.sync += level.eq(0)
-        with m.Else():
-            m.d.sync += level.eq(level + self.put - self.take)
+            m.d.sync += [level.eq(0), self.valid.eq(0)]
         return m
