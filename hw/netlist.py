@@ -45,12 +45,18 @@ class _Kinds:
 
     def _place(self, fragment: Fragment, component: wiring.Component, label: str) -> Instance:
         kind = getattr(component, "module", None) or self.add(fragment, component, f"{self._prefix}_{_kind(component)}")
-        connections = {"i_clk": ClockSignal(), "i_rst": ResetSignal()}
+        text = self.modules.get(kind)  # None: of a module that is made elsewhere, and has both
+        clocks = {"clk": ClockSignal(), "rst": ResetSignal()}.items()
+        connections = {f"i_{port}": value for port, value in clocks if text is None or _has_input(text, port)}
         for port, member, value in _ports(component):
             connections[f"{'i' if member.flow == In else 'o'}_{port}"] = value
             if isinstance(value, Signal):
                 value.name = f"{label}_{port}"
         return Instance(kind, **connections)
+
+
+def _has_input(text: str, port: str) -> bool:
+    return re.search(rf"^  wire .*\binput \d+ .*\\{port}$", text, re.MULTILINE) is not None
 
 
 def _component(fragment: Fragment) -> wiring.Component | None:

@@ -3,7 +3,7 @@
 Each function takes ``wire``, a node of the graph and its operands' values, and yields one tuple of values after each
 step, the result first. A register may follow any of them: the next step is given what the one before yielded,
 registered or not. ``wire(value)`` gives a value that is used more than once a signal of its own, so that the Verilog
-says it once.
+says it once; ``wire.shifted(x, times, places, left=)`` is a `hw.blocks.shifter.ShiftStage`.
 """
 
 import functools
@@ -96,13 +96,18 @@ def _leading_zeros(bits: Value) -> Value:
 
 def shift_left(wire, node, x, count):
     """Bits that leave at the top are redundant (`lead`)."""
-    low = len(count) // 2
-    for bit in reversed(range(low, len(count))):
-        x = wire(Mux(count[bit], Cat(Const(0, 1 << bit), x)[: len(x)], x))
+    low = len(count) // 4 * 2
+    x = _shifted(wire, x, count, low, left=True)
     x, count = yield x, count[:low]
-    for bit in reversed(range(low)):
-        x = wire(Mux(count[bit], Cat(Const(0, 1 << bit), x)[: len(x)], x))
-    yield (x.as_signed() if node.fmt.signed else x,)
+    yield (_shifted(wire, x, count, left=True),)
+
+
+def _shifted(wire, x, count, low=0, *, left):
+    """By the count's bits from ``low`` on, two at a time."""
+    stages = [slice(max(low, bit - 2), bit) for bit in range(len(count), low, -2)]
+    for bits in stages:
+        x = wire.shifted(x, count[bits], 1 << bits.start, left=left)
+    return x
 
 
 def round_half_up(wire, node, x):
@@ -123,12 +128,11 @@ def shift_right(wire, node, x, count):
     x = x << _grown(node)
     beyond = left & x.any() if node.operands[1].fmt.signed else Const(0)
     below = Const(0) if never(beyond) else negative(x)
-    low = (len(count) - 1) // 2
-    for bit in reversed(range(low, len(count) - 1)):
-        x = wire(Mux(count[bit], x >> (1 << bit), x))
+    count = count[:-1]
+    low = len(count) // 4 * 2
+    x = _shifted(wire, x, count, low, left=False)
     x, count, beyond, below = yield x, count[:low], beyond, below
-    for bit in reversed(range(low)):
-        x = wire(Mux(count[bit], x >> (1 << bit), x))
+    x = _shifted(wire, x, count, left=False)
     x, beyond, below = yield x >> drop, beyond, below
     result, fault = _saturate(target, wire((x + 1) >> 1), x >> 1)
     extreme = either(below, Const(target.raw_min, shape(target)), Const(target.raw_max, shape(target)))

@@ -2,11 +2,12 @@
 
 import itertools
 
-from amaranth.hdl import Cat, Const, Module, Signal
+from amaranth.hdl import Cat, Const, Module, Signal, Value
 
 from golden.graph import Node
 
 from .blocks.multiplier import Multiplier
+from .blocks.shifter import ShiftStage
 from .delay import DelayLines
 from .operations import STEPS, field, never, shape, shift_count, step_count
 from .schedule import WIRES, Schedule
@@ -107,15 +108,8 @@ class Pipe:
 
     def _steps(self, node, operands):
         """The operation's values, the registers that it costs behind the last of its steps."""
-        wires = itertools.count(1)
-
-        def wire(value):
-            signal = Signal(value.shape(), name=f"{node.name}_w{next(wires)}")
-            self._m.d.comb += signal.eq(value)
-            return signal
-
         count, cost = step_count(node), self._schedule.cycle[node] - self._schedule.start[node]
-        steps = STEPS[node.kind](wire, node, *operands)
+        steps = STEPS[node.kind](_Wires(self._m, node.name), node, *operands)
         values = next(steps)
         for step in range(1, count):
             if count - step < cost:
@@ -148,3 +142,20 @@ class Pipe:
             reports.append(Signal(name=f"{name.replace(' ', '_')}_reported_{len(reports)}"))
             self._m.d.sync += reports[-1].eq(bit & self.valid(cycle))
 
+
+class _Wires:
+    """Values of an operation that get a signal of their own: see `hw.operations`."""
+
+    def __init__(self, m: Module, name: str):
+        self._m, self._name, self._numbers = m, name, itertools.count(1)
+
+    def __call__(self, value) -> Signal:
+        signal = Signal(value.shape(), name=f"{self._name}_w{next(self._numbers)}")
+        self._m.d.comb += signal.eq(value)
+        return signal
+
+    def shifted(self, x, times, places: int, *, left: bool) -> Value:
+        stage = ShiftStage(x.shape(), len(times), places, left=left)
+        self._m.submodules[f"{self._name}_by_{places}"] = stage
+        self._m.d.comb += [stage.i.eq(x), stage.times.eq(times)]
+        return stage.o.as_signed() if x.shape().signed else stage.o

@@ -1,5 +1,6 @@
 """Blocks of ECP5 primitives: the same bits in the same cycle as their generic twins, and as few blocks as can be."""
 
+import itertools
 import math
 import re
 from fnmatch import fnmatch
@@ -14,6 +15,7 @@ from test_hw_multiplier import SHAPES, operands
 import sim.rtl
 from hw.blocks.memory import READ_LATENCY, BlockRam
 from hw.blocks.multiplier import Multiplier
+from hw.blocks.shifter import ShiftStage
 from hw.core import Core
 from hw.families import FAMILIES, MODELS
 from hw.families.ecp5 import BLOCKS
@@ -32,10 +34,13 @@ class Recorder:
     """Takes down what blocks a circuit asks for, and offers none."""
 
     def __init__(self):
-        self.multipliers, self.rams = set(), set()
+        self.multipliers, self.rams, self.shifts = set(), set(), set()
 
     def get_multiplier(self, block):
         self.multipliers.add((block.a.shape(), block.b.shape(), block.registers))
+
+    def get_shift_stage(self, block):
+        self.shifts.add((block.i.shape(), len(block.times), block.places, block.left))
 
     def get_block_ram(self, block):
         self.rams.add((len(block.data), block.depth, tuple(block.init)))
@@ -75,17 +80,22 @@ def traffic(width, depth, rng):
 
 @pytest.fixture(scope="module")
 def twins(asked):
-    """(block, inputs, outputs of it and of its twin) of all multipliers, of all block RAMs."""
+    """(block, inputs, outputs of it and of its twin) of all multipliers, of all block RAMs, of all shifts."""
     rng = np.random.default_rng(1)
     of_two, of_words = multipliers(asked), rams(asked, rng)
     inputs = [dict(zip("ab", operands((a, b), rng, CYCLES), strict=True)) for a, b, _ in of_two]
     inputs = [{name: np.array(values[:CYCLES]) for name, values in pair.items()} for pair in inputs]
     inputs += [traffic(width, depth, rng) for width, depth, _ in of_words]
+    of_places = sorted(asked.shifts, key=str)
+    inputs += [{"i": rng.integers(1 << shape.width, size=CYCLES) - (shape.signed << shape.width - 1),
+                "times": rng.integers(1 << bits, size=CYCLES)} for shape, bits, _, _ in of_places]
     blocks = [Multiplier(a, b, registers=registers) for a, b, registers in of_two]
     blocks += [BlockRam(width=width, depth=depth, init=init) for width, depth, init in of_words]
+    blocks += [ShiftStage(*stage, left=left) for *stage, left in of_places]
     outputs = run(blocks, inputs, BUILD)
-    together = list(zip(of_two + of_words, inputs, outputs, strict=True))
-    return together[: len(of_two)], together[len(of_two) :]
+    groups = of_two, of_words, of_places
+    together = iter(list(zip([block for group in groups for block in group], inputs, outputs, strict=True)))
+    return [list(itertools.islice(together, len(group))) for group in groups]
 
 
 def test_multipliers_have_their_twins_bits_in_the_same_cycle(twins):
@@ -94,6 +104,15 @@ def test_multipliers_have_their_twins_bits_in_the_same_cycle(twins):
         for output in (generic, ecp5):
             assert np.array_equal(output[registers:].astype(np.int64), product[:-registers]), (a, b, registers)
         assert len(set(ecp5.tolist())) > min(CYCLES, 1 << a.width + b.width) // 8
+
+
+def test_shifts_have_their_twins_bits(twins):
+    for (shape, _, places, left), inputs, outputs in twins[2]:
+        i, by = inputs["i"], inputs["times"] * places
+        shifted = np.where(by < 63, i << by if left else i >> by, 0 if left else i >> 62) & (1 << shape.width) - 1
+        for output in outputs:
+            assert np.array_equal(output.astype(np.int64), shifted), (shape, places, left)
+    assert {left for (*_, left), _, _ in twins[2]} == {False, True}
 
 
 def test_block_rams_have_their_twins_bits_in_the_same_cycle(twins):

@@ -102,15 +102,15 @@ def test_each_kind_of_component_is_one_module(text):
     names = re.findall(r"^module (\w+)", text, re.MULTILINE)
     assert len(set(names)) == len(names)
     lane = {name.removeprefix(f"{LANE}_") for name in names if name.startswith(f"{LANE}_")}
-    delays = {name for name in lane if re.fullmatch(r"delay_\d+x\d+", name)}
-    assert lane - delays == {
+    sized = re.compile(r"delay_\d+x\d+|shift_(left|right)_[13]x\d+_[su]\d+")
+    assert {name for name in lane if not sized.fullmatch(name)} == {
         "accumulator_add", "accumulator_subtract", "block_ram_10x36", "block_ram_16x36", "block_ram_512x36",
         "edge_processor", "lut_ram_3x1", "lut_ram_3x15", "lut_ram_3x18", "lut_ram_3x3", "lut_ram_3x36", "lut_ram_3x8",
         "multiplier_s18_s18", "multiplier_s18_u18", "multiplier_u14_u17", "multiplier_u18_s18", "multiplier_u18_u18",
         "rom_1024x36", *[name for name in lane if re.fullmatch(r"multiplier_u16_u8|lut_ram_3x12", name)],
     }
     top = {name.removeprefix(f"{TOP}_") for name in names if not name.startswith(LANE)}
-    assert {name for name in top if not re.fullmatch(r"delay_\d+x\d+", name)} == {
+    assert {name for name in top if not sized.fullmatch(name)} == {
         TOP, "block_ram_10x33", "block_ram_16x18", "block_ram_16x34", "block_ram_16x36", "block_ram_16x8", "fetch_34",
         "front_39", "front_71",
         "fetch_66", "host_port", "multiplier_u18_s18", "node_updater", "queue_8x39", "queue_8x71", "sequencer",

@@ -16,6 +16,12 @@ ADDRESS_BITS = 14
 
 LOW, HIGH = Const(0, 1), Const(1, 1)
 
+ONE_OF_TWO = 0xCACA
+"""Contents of a lookup table: C ? B : A, whatever D."""
+
+ONE_OF_TWO_OR_NONE = 0x00CA
+"""The same, or 0 if D."""
+
 
 class Ecp5:
     """Modules with primitives for the blocks of `hw.blocks`, asked for by their ``elaborate``.
@@ -41,6 +47,28 @@ class Ecp5:
         m.submodules.block = Instance("MULT18X18D", p_GSR="DISABLED", **clocks, **ports, **_outputs("P", product))
         return m
 
+    def get_shift_stage(self, stage) -> Module | None:
+        """Two lookup tables and the multiplexer behind them for each bit, which no tool finds; where two sources are
+        zeros, one lookup table."""
+        if len(stage.times) == 1:
+            return None
+        m = Module()
+        once, twice = stage.times
+        out = _word("o", len(stage.o))
+        m.d.comb += stage.o.eq(Cat(out))
+        for n, bit in enumerate(out):
+            sources = [stage.source(n, times) for times in range(4)]
+            a, b, c, d = (LOW if source is None else source for source in sources)
+            if all(source is None for source in sources[2:]):
+                m.submodules[f"lut_{n}"] = _lookup(ONE_OF_TWO_OR_NONE, bit, A=a, B=b, C=once, D=twice)
+                continue
+            halves = Signal(2, name=f"halves_{n}")
+            for half, pair in enumerate(((a, b), (c, d))):
+                table = _lookup(ONE_OF_TWO, halves[half], A=pair[0], B=pair[1], C=once, D=LOW)
+                m.submodules[f"lut_{n}_{half}"] = table
+            m.submodules[f"mux_{n}"] = Instance("PFUMX", i_BLUT=halves[0], i_ALUT=halves[1], i_C0=twice, o_Z=bit)
+        return m
+
     def get_block_ram(self, ram) -> Module | None:
         """As few block RAMs as hold it side by side, with their output registers: each has some bits of every word, so
         that nothing has to choose between them afterwards."""
@@ -57,6 +85,11 @@ class Ecp5:
             m.submodules[f"block_{low}"] = block(ram, bits, ram.write_data[part], read[part], parameters)
         m.d.comb += ram.data.eq(Cat(read))
         return m
+
+
+def _lookup(contents: int, output, **inputs) -> Instance:
+    ports = {f"i_{name}": value for name, value in inputs.items()}
+    return Instance("LUT4", p_INIT=Const(contents, 16), o_Z=output, **ports)
 
 
 def _wide(ram, bits, data, read, parameters) -> Instance:

@@ -19,6 +19,16 @@ module ecp5_stage #(parameter CLK = "NONE", WIDTH = 18) (input clk, ce, rst, inp
     endgenerate
 endmodule
 
+// A lookup table.
+module LUT4 #(parameter [15:0] INIT = 0) (input A, B, C, D, output Z);
+    assign Z = INIT[{D, C, B, A}];
+endmodule
+
+// One of two lookup tables beside each other.
+module PFUMX (input ALUT, BLUT, C0, output Z);
+    assign Z = C0 ? ALUT : BLUT;
+endmodule
+
 // Product of two operands, each signed or not.
 module MULT18X18D #(
     parameter REG_INPUTA_CLK = "NONE", REG_INPUTB_CLK = "NONE", REG_PIPELINE_CLK = "NONE", REG_OUTPUT_CLK = "NONE",

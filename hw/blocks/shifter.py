@@ -1,0 +1,55 @@
+"""A stage of a shifter: lookup tables that choose one of four."""
+
+from amaranth.hdl import Cat, Const, Module, Mux, Value, unsigned
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+
+class ShiftStage(wiring.Component):
+    """A number shifted by 0 or 1, or by 0 to 3 times some places; combinational.
+
+    Bits that leave are lost. To the left zeros enter, to the right copies of the sign.
+
+    Parameters
+    ----------
+    shape : Shape
+        Of the number.
+    bits : int
+        Of how many times, 1 or 2.
+    places : int
+    left : bool
+
+    Members
+    -------
+    i : In, o : Out
+    times : In(bits)
+    """
+
+    def __init__(self, shape, bits: int, places: int, *, left: bool):
+        self.places, self.left = places, left
+        side = "left" if left else "right"
+        self.kind = f"shift_{side}_{'1' if bits == 1 else '3'}x{places}_{'s' if shape.signed else 'u'}{shape.width}"
+        super().__init__({"i": In(shape), "times": In(bits), "o": Out(unsigned(shape.width))})
+
+    def source(self, bit: int, times: int) -> Value | None:
+        """Where an output bit comes from; None for a zero."""
+        place = bit - times * self.places if self.left else bit + times * self.places
+        if 0 <= place < len(self.i):
+            return self.i[place]
+        return self.i[-1] if self.i.shape().signed and not self.left else None
+
+    def elaborate(self, platform):
+        block = platform.get_shift_stage(self) if hasattr(platform, "get_shift_stage") else None
+        return block or self._generic()
+
+    def _generic(self):
+        m = Module()
+        zero = Const(0, 1)
+        moved = []
+        for times in range(1 << len(self.times)):
+            sources = [self.source(n, times) for n in range(len(self.i))]
+            moved.append(Cat(zero if bit is None else bit for bit in sources))
+        for bit in self.times:
+            moved = [Mux(bit, far, near) for near, far in zip(moved[::2], moved[1::2], strict=True)]
+        m.d.comb += self.o.eq(moved[0])
+        return m
