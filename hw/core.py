@@ -9,15 +9,15 @@ from amaranth.lib.wiring import In, Out
 from golden import records
 from golden.graph import AXES
 
-from .blocks.memory import READ_LATENCY, BlockRam
+from .blocks.memory import BlockRam
 from .choice import choose
 from .delay import DelayLines
 from .edge import EdgeDatapath
 from .fetch import Fetch
 from .fields import stage_bits, unpack
 from .front import Front
-from .host import CHOICE, MEMORY, HostPort, host_signature
-from .lane import COPIED, NEXT, NODE_WORDS, Lane, latency
+from .host import CHOICE, HANDOVER, MEMORY, HostPort, host_signature
+from .lane import COPIED, NEXT, NODE_WORDS, Lane, latency, written
 from .parameters import Parameters
 from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from .sequencer import Sequencer
@@ -55,9 +55,8 @@ class Core(wiring.Component):
         datapath = self.datapath
         loop = latency(datapath) + self.updater.latency + COPIED
         for word, output in NEXT.items():
-            written = READ_LATENCY + datapath.ready(output)
-            if written > loop:
-                raise ValueError(f"the edge's {word} must be written within {loop} cycles, not after {written}")
+            if (cycles := written(datapath, output)) > loop:
+                raise ValueError(f"the edge's {word} must be written within {loop} cycles, not after {cycles}")
 
     def elaborate(self, platform):
         m = Module()
@@ -75,6 +74,9 @@ class Core(wiring.Component):
         m.d.sync += [self._index.eq(self._host.index), self._data.eq(self._host.data)]
         self._idle = Signal()
         m.d.comb += [self._idle.eq(~self._sequencer.busy), self.busy.eq(self._sequencer.busy)]
+        self._loading = Signal()
+        idle = [self._lines.later(self._idle, cycles, name="idle", reset=True) for cycles in range(HANDOVER + 1)]
+        m.d.comb += self._loading.eq(Cat(idle).any())
         self._rows()
         self._nodes()
         self._sums()
@@ -95,8 +97,9 @@ class Core(wiring.Component):
         """A list's memory: read by its `Fetch`, or by the host while nothing runs."""
         ram = BlockRam(width=records.width(record), depth=depth)
         self._m.submodules[name] = ram
+        read_address = self._lines.later(host_address, HANDOVER, name=f"{name}_index")
         self._m.d.comb += [
-            ram.address.eq(Mux(self._idle, host_address, fetch_address)),
+            ram.address.eq(Mux(self._loading, read_address, fetch_address)),
             ram.write_address.eq(host_address),
             ram.write_data.eq(self._data),
         ]
@@ -107,23 +110,21 @@ class Core(wiring.Component):
         m, sequencer, behind = self._m, self._sequencer, Cat(fetch.word, fetch.last, fetch.index)
         m.submodules[f"{name}_front"] = front = Front(width=len(behind))
         m.d.comb += [
-            fetch.flush.eq(self._idle),
-            front.flush.eq(self._idle),
+            fetch.flush.eq(self._loading),
+            front.flush.eq(self._loading),
             front.behind.eq(behind),
             front.behind_valid.eq(fetch.valid),
             front.behind_ready.eq(getattr(sequencer, f"{name}_behind_ready")),
             fetch.take.eq(front.behind_take),
             front.ready.eq(getattr(sequencer, f"{name}_ready")),
-            front.take.eq(getattr(sequencer, f"{name}_take")),
             getattr(sequencer, f"{name}_valid").eq(front.valid),
-            getattr(sequencer, f"{name}_may").eq(front.may),
+            getattr(sequencer, f"{name}_goes").eq(front.goes),
         ]
         words = len(fetch.word)
         done, cycles = {
             "row": ("row_summed", latency(self.datapath) - 1), "node": ("node_updated", self.updater.latency + COPIED),
         }[name]
-        take = getattr(sequencer, f"{name}_take")
-        for port, value in ((done, take), (f"{done}_last", take & getattr(sequencer, f"{name}_last"))):
+        for port, value in ((done, front.goes), (f"{done}_last", front.goes & getattr(sequencer, f"{name}_last"))):
             m.d.comb += getattr(sequencer, port).eq(self._lines.later(value, cycles, name=port, reset=True))
         entry = SimpleNamespace(word=front.entry[:words], last=front.entry[words], index=front.entry[words + 1 :])
         return entry, fetch
@@ -154,7 +155,7 @@ class Core(wiring.Component):
         self._valid = [entry["valid"] for entry in entries(front.word)]
         for lane, entry in zip(self._lanes, entries(front.word), strict=True):
             m.d.comb += [
-                lane.valid.eq(sequencer.row_take & entry["valid"]),
+                lane.valid.eq(sequencer.row_goes & entry["valid"]),
                 lane.row.eq(front.index),
                 *(getattr(lane, name).eq(entry[name]) for name in ("i", "j", "i_first", "j_first", "material")),
                 *(bit.eq(value) for bit, value in stage_bits(lane, sequencer.row_stage)),
@@ -187,7 +188,7 @@ class Core(wiring.Component):
         for number, updater in enumerate(self.updaters):
             entry = unpack(record, front.word[number * width : (number + 1) * width])
             m.d.comb += [
-                updater.valid.eq(sequencer.node_take & entry["valid"]),
+                updater.valid.eq(sequencer.node_goes & entry["valid"]),
                 updater.row.eq(front.index),
                 updater.mask.eq(entry["mask"]),
                 updater.velocity_shift.eq(host.velocity_shift),
@@ -252,7 +253,7 @@ class Core(wiring.Component):
             reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
             reads += [updater.host_mass, entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
             nodes.append(chosen(reads, host.word, f"node{number}"))
-        m.d.comb += host.node_word.eq(then_chosen(nodes, column, "node"))
+        m.d.comb += host.node_word.eq(then_chosen(nodes, p.node_place(host.index)[1], "node"))
 
         edges, materials, tables = [], [], []
         for number, (port, entry) in enumerate(zip(self._lanes, self._edge_entries, strict=True)):
@@ -287,8 +288,8 @@ class Core(wiring.Component):
         ]
         events = {
             "cycles": sequencer.busy,
-            "rows_issued": sequencer.row_take,
-            "edges_issued": Mux(sequencer.row_take, sum(self._valid), 0),
+            "rows_issued": sequencer.row_goes,
+            "edges_issued": Mux(sequencer.row_goes, sum(self._valid), 0),
             **{name: getattr(sequencer, name) for name in ("node_waits", "list_waits", "end_waits")},
         }
         for name in COUNTERS.values():

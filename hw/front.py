@@ -9,23 +9,20 @@ LATENCY = 1
 
 
 class Front(wiring.Component):
-    """A register between a `hw.fetch.Fetch` and whoever takes its entries.
+    """A register between a `hw.fetch.Fetch` and what its entries start.
 
     What makes an entry ready is compared while it still stands behind the front, or again in every cycle in which it
-    stands there: ``may`` comes from a register, a cycle after the reason, and an entry may go in every cycle. What is
-    once ready stays so.
+    stands there: that it ``goes`` is in a register, a cycle after the reason, and an entry may go in every cycle.
 
     Members
     -------
     flush : In(1)
     behind, behind_valid, behind_ready : In, behind_take : Out(1)
         The next entry, if there is one; whether it is ready; it moves to the front.
-    entry, valid, may : Out
-        The entry in front, if there is one; it was found ready.
+    entry, valid, goes : Out
+        The entry in front, if there is one; it goes in this cycle.
     ready : In(1)
         The entry in front is ready.
-    take : In(1)
-        It goes; only while ``valid`` and ``may``.
     """
 
     def __init__(self, *, width: int):
@@ -39,20 +36,23 @@ class Front(wiring.Component):
                 "behind_take": Out(1),
                 "entry": Out(width),
                 "valid": Out(1),
-                "may": Out(1),
+                "goes": Out(1),
                 "ready": In(1),
-                "take": In(1),
             }
         )
 
     def elaborate(self, platform):
         m = Module()
-        moves = ~self.valid | self.take
+        moves = ~self.valid | self.goes
         m.d.comb += self.behind_take.eq(moves & self.behind_valid)
         with m.If(moves):
-            m.d.sync += [self.entry.eq(self.behind), self.valid.eq(self.behind_valid), self.may.eq(self.behind_ready)]
+            m.d.sync += [
+                self.entry.eq(self.behind),
+                self.valid.eq(self.behind_valid),
+                self.goes.eq(self.behind_valid & self.behind_ready),
+            ]
         with m.Elif(self.ready):
-            m.d.sync += self.may.eq(1)
+            m.d.sync += self.goes.eq(1)
         with m.If(self.flush):
-            m.d.sync += self.valid.eq(0)
+            m.d.sync += [self.valid.eq(0), self.goes.eq(0)]
         return m

@@ -25,7 +25,10 @@ from .registers import (
 CHOICE = 2
 """Cycles for choosing a word, then a lane, then a region."""
 
-MEMORY = 1 + READ_LATENCY
+HANDOVER = 2
+"""Registers on the host's way to the memories of lanes and updaters, which are far: a run starts so much later."""
+
+MEMORY = 1 + HANDOVER + READ_LATENCY
 """Cycles from an access to its word: the way to the memories, and theirs."""
 
 LATENCY = 4 + MEMORY + 3 * CHOICE
@@ -115,16 +118,17 @@ class HostPort(wiring.Component):
         )
         controls = region == Region.CONTROL
         writes = Cat(controls & write & (index == register) for register in WRITABLE)
+        strobes = Cat(write & (region == r) for r in Region)
         anytime = controls & (~write | (index == Control.FAULTS) | (index == Control.REFUSED))
-        request, write, index, word, lane, region, data, possible, writes, anytime = self._registered(
-            m, "now", request, write, index, word, lane, region, data, Array(possible)[region], writes, anytime
+        possible = request & Array(possible)[region]
+        request, index, word, lane, region, data, possible, writes, strobes, anytime = self._registered(
+            m, "now", request, index, word, lane, region, data, possible, writes, strobes, anytime
         )
         written = Signal(len(writes))  # a control register, a cycle later
         starts, starting = (bits[WRITABLE.index(Control.RUN)] for bits in (writes, written))
-        go, allowed, loaded = Signal(), Signal(), Signal(2)  # a count that is written is not 0
+        go, loaded = Signal(), Signal(2)  # a count that is written is not 0
         free = ~self.busy & ~self.start & ~starting
-        m.d.comb += allowed.eq(possible & (anytime | free) & (~starts | loaded.all()))
-        m.d.comb += go.eq(request & allowed)
+        m.d.comb += go.eq(possible & (anytime | free) & (~starts | loaded.all()))
         for bit, register in zip(loaded, (Control.ROW_COUNT, Control.NODE_COUNT), strict=True):
             with m.If(go & writes[WRITABLE.index(register)]):
                 m.d.sync += bit.eq(1)
@@ -132,8 +136,8 @@ class HostPort(wiring.Component):
         # The access itself, a cycle later; its word and region wait for the memory
         refused, refuse = Signal(32), Signal()
         m.d.sync += [self.index.eq(index), self.data.eq(data), self.word.eq(word), self.lane.eq(lane)]
-        m.d.sync += [self.strobe[r].eq(go & write & (region == r)) for r in Region]
-        m.d.sync += [written.eq(Mux(go, writes, 0)), self.start.eq(starting), refuse.eq(request & ~allowed)]
+        m.d.sync += [self.strobe.eq(Mux(go, strobes, 0)), written.eq(Mux(go, writes, 0))]
+        m.d.sync += [self.start.eq(starting), refuse.eq(request & ~go)]
         m.d.sync += refused.eq(refused + refuse)
         self._control_writes(m, dict(zip(WRITABLE, written, strict=True)), refused)
 
@@ -141,8 +145,8 @@ class HostPort(wiring.Component):
         until_chosen = MEMORY + 2 * CHOICE
         register = choose(m, lines, self._registers(refused), self.index, cycles=until_chosen, name="register")
         words = [register, *(getattr(self, word_of(r)) for r in Region if r != Region.CONTROL), Const(0)]
-        which = lines.later(Mux(allowed, region, len(Region)), 1 + until_chosen, name="which")
-        for port, value in ((self.answer, request), (self.error, request & ~allowed)):
+        which = lines.later(Mux(go, region, len(Region)), 1 + until_chosen, name="which")
+        for port, value in ((self.answer, request), (self.error, request & ~go)):
             m.d.comb += port.eq(lines.later(value, 1 + until_chosen + CHOICE, name=port.name, reset=True))
         m.d.comb += self.read_data.eq(choose(m, lines, words, which, cycles=CHOICE, name="read"))
         lines.build()

@@ -1,6 +1,6 @@
 """A lane: an edge processor, the memories of its edges, its copy of the nodes and its sums of forces."""
 
-from amaranth.hdl import Array, Module, Mux, Signal
+from amaranth.hdl import Array, Const, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -12,7 +12,7 @@ from .blocks.memory import READ_LATENCY, BlockRam, LutRam
 from .choice import choose
 from .delay import DelayLines
 from .edge import EdgeDatapath, EdgeProcessor
-from .host import CHOICE, MEMORY
+from .host import CHOICE, HANDOVER, MEMORY
 from .operations import shape
 from .parameters import Parameters
 
@@ -23,6 +23,11 @@ NEXT = {"base": "base_next", "ratio": "ratio_next", "total": "total_next"}
 
 COPIED = 1
 """Cycles from a node's new state to its copy in a lane's memories: they are far from the node updater."""
+
+
+def written(datapath: EdgeDatapath, output: str) -> int:
+    """Cycles from the issue of an edge to its new word, an output, in the memory."""
+    return READ_LATENCY + datapath.ready(output) + 1
 
 
 def latency(datapath: EdgeDatapath) -> int:
@@ -111,10 +116,10 @@ class Lane(wiring.Component):
             name = f"stage_{bit}"
             m.d.comb += getattr(edge, name).eq(self._later(name, self._arrival[name]))
         m.d.comb += [
-            edge.table_write.eq(self.host_write_table),
-            edge.table_address.eq(self.host_index),
-            edge.table_data.eq(self.host_data),
-            edge.table_read.eq(self.host),
+            edge.table_write.eq(self._host("write_table")),
+            edge.table_address.eq(self._host("index")),
+            edge.table_data.eq(self._host("data")),
+            edge.table_read.eq(self._host("")),
             self.host_table.eq(edge.table_word),
             self.fault.eq(edge.fault),
         ]
@@ -124,6 +129,12 @@ class Lane(wiring.Component):
     def _later(self, name: str, cycle: int):
         """What was issued, when its edge is in ``cycle`` of the edge processor; its nodes are read before cycle 0."""
         return self._lines.later(getattr(self, name), READ_LATENCY + cycle, name=name, reset=name == "valid")
+
+    def _host(self, name: str, cycles: int = HANDOVER):
+        """What comes from the host, which is far: later by as many registers, of which the last may be one behind a
+        choice."""
+        name = f"host_{name}".rstrip("_")
+        return self._lines.later(getattr(self, name), cycles, name=name, reset=True)
 
     def _nodes(self):
         """Two copies of the nodes' states, one for each end of an edge."""
@@ -151,44 +162,48 @@ class Lane(wiring.Component):
         p = self.parameters
         written = {"row": Signal(p.node_row_bits, name="copied_row", reset_less=True)}
         words = {}
-        host_row, _ = p.node_place(self.host_index)
-        self._m.d.sync += written["row"].eq(Mux(self.host, host_row, self.update_row))
+        host = self._host("", HANDOVER - 1)
+        host_row, _ = p.node_place(self._host("index", HANDOVER - 1))
+        self._m.d.sync += written["row"].eq(Mux(host, host_row, self.update_row))
         for n in range(p.updates):
             written[n] = Signal(len(NODE_WORDS), name=f"copied{n}")
             updates = getattr(self, f"update{n}").replicate(len(NODE_WORDS))
-            self._m.d.sync += written[n].eq(Mux(self.host, getattr(self, f"host_write_node{n}"), updates))
+            self._m.d.sync += written[n].eq(Mux(host, self._host(f"write_node{n}", HANDOVER - 1), updates))
             for word in NODE_WORDS:
                 update = getattr(self, f"update{n}_{word}")
                 words[n, word] = copied = Signal.like(update, name=f"copied{n}_{word}", reset_less=True)
-                self._m.d.sync += copied.eq(Mux(self.host, self.host_data, update))
+                self._m.d.sync += copied.eq(Mux(host, self._host("data", HANDOVER - 1), update))
         return written, words
 
     def _edges(self):
         """The edges' own words, each read when the edge processor needs it and written when it is done."""
-        m, host_writes = self._m, {"length": self.host_write_length}
-        host_writes |= dict.fromkeys(("base", "ratio"), self.host_write_ratio)
+        host, index, data = (self._host(name, HANDOVER - 1) for name in ("", "index", "data"))
+        host_writes = {"length": self._host("write_length", HANDOVER - 1)}
+        host_writes |= dict.fromkeys(("base", "ratio"), self._host("write_ratio", HANDOVER - 1))
         for word in EDGE_WORDS:
             ram = BlockRam(width=self._state[word].width, depth=self.parameters.rows)
-            m.submodules[f"edge_{word}"] = ram
-            read = self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY)
-            m.d.comb += [ram.address.eq(read), getattr(self._edge, f"edge_{word}").eq(ram.data)]
+            self._m.submodules[f"edge_{word}"] = ram
+            read = self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY - 1)
+            self._chosen(ram, "address", host, index, read)
+            self._m.d.comb += getattr(self._edge, f"edge_{word}").eq(ram.data)
+            writes = {"write": Const(0, 1), "write_address": index, "write_data": Const(0, 1)}
             if word in NEXT:
                 ready = self._ready(NEXT[word])
-                m.d.comb += [
-                    ram.write.eq(self._later("valid", ready)),
-                    ram.write_address.eq(self._later("row", ready)),
-                    ram.write_data.eq(getattr(self._edge, NEXT[word])),
-                ]
-            with m.If(self.host):
-                m.d.comb += ram.address.eq(self.host_index)
-                if word in host_writes:
-                    m.d.comb += [
-                        ram.write.eq(host_writes[word]),
-                        ram.write_address.eq(self.host_index),
-                        ram.write_data.eq(self.host_data),
-                    ]
+                writes = {
+                    "write": self._later("valid", ready),
+                    "write_address": self._later("row", ready),
+                    "write_data": getattr(self._edge, NEXT[word]),
+                }
+            host_write = host_writes.get(word, Const(0, 1))
+            for port, by_host in (("write", host_write), ("write_address", index), ("write_data", data)):
+                self._chosen(ram, port, host, by_host, writes[port])
             if word in ("length", "ratio"):
-                m.d.comb += getattr(self, f"host_{word}").eq(ram.data)
+                self._m.d.comb += getattr(self, f"host_{word}").eq(ram.data)
+
+    def _chosen(self, ram, port: str, host, by_host, value):
+        """To a memory, the host's or the lane's own, from a register."""
+        target = getattr(ram, port)
+        self._m.d.sync += target.eq(Mux(host, by_host, value))
 
     def _material(self):
         """A small memory for each coefficient, read in the cycle before it is needed."""
@@ -199,13 +214,13 @@ class Lane(wiring.Component):
             address = self._later("material", self._arrival[f"material_{name}"] - 1)
             self._m.d.comb += [
                 ram.address.eq(address),
-                ram.write.eq(self.host_write_material[number]),
-                ram.write_address.eq(self.host_index),
-                ram.write_data.eq(self.host_data),
+                ram.write.eq(self._host("write_material")[number]),
+                ram.write_address.eq(self._host("index")),
+                ram.write_data.eq(self._host("data")),
                 getattr(self._edge, f"material_{name}").eq(ram.data),
             ]
-            with self._m.If(self.host):
-                self._m.d.comb += ram.address.eq(self.host_index)
+            with self._m.If(self._host("")):
+                self._m.d.comb += ram.address.eq(self._host("index"))
             words.append(ram.data)
         cycles = READ_LATENCY - 1 + CHOICE  # a small memory is quick, but there are many of them
         word = choose(self._m, self._lines, words, self.host_field, cycles=cycles, name="material_word",

@@ -7,7 +7,7 @@ from .core import Core
 from .edge import EdgeDatapath
 from .front import LATENCY as FRONT_LATENCY
 from .host import LATENCY as HOST_LATENCY
-from .lane import COPIED, NEXT
+from .lane import COPIED, NEXT, written
 from .lane import latency as sums_latency
 from .parameters import Parameters
 from .updater import NodeDatapath
@@ -29,12 +29,12 @@ class Latencies:
 def latencies(core: Core) -> list[tuple[str, str, int]]:
     """(of what, from where to where, cycles), each read from the component that has it."""
     edge, node, loop = core.datapath, core.updater, Latencies.of(core.parameters)
-    written = READ_LATENCY + max(edge.ready(name) for name in NEXT.values())
+    last = max(written(edge, name) for name in NEXT.values())
     return [
         ("block RAM", "address to word", READ_LATENCY),
         ("edge", "issue to its force on both nodes", READ_LATENCY + edge.ready("pull_x")),
         ("edge", "issue to the sums that contain its force", sums_latency(edge)),
-        ("edge", "issue to its new ratio in the memory", written),
+        ("edge", "issue to its new ratio in the memory", last),
         ("node", "issue to its new state in the lanes' memories", node.latency + COPIED),
         ("stage", "an edge to the next edge of the same node, at least", loop.edge + loop.node),
         ("host port", "request to answer", HOST_LATENCY),

@@ -76,22 +76,33 @@ def absolute(wire, node, a):
 
 
 def lead(wire, node, *vector):
-    """Leading zeros of the OR of all magnitudes."""
+    """Leading zeros of the OR of all magnitudes, first of groups of bits."""
     magnitude = Const(0)
     for x in vector:
         magnitude |= (x[:-1] ^ x[-1].replicate(len(x) - 1)) if x.shape().signed else x
-    (magnitude,) = yield (wire(magnitude)[-node.detail :],)
-    yield (_leading_zeros(wire(magnitude)),)
+    magnitude = wire(magnitude)[-node.detail :]
+    groups = [slice(max(0, low), low + GROUP) for low in range(node.detail - GROUP, -GROUP, -GROUP)]
+    magnitude, some = yield magnitude, Cat(magnitude[group].any() for group in groups)
+    yield (_leading_zeros([(bit, magnitude[group]) for bit, group in zip(some, groups, strict=True)]),)
 
 
-def _leading_zeros(bits: Value) -> Value:
-    """As a tree: the count of the upper half, or half the width and the count of the lower."""
-    width = len(bits)
-    if width == 1:
-        return ~bits
-    half = 1 << (width - 1).bit_length() - 1
-    upper, lower = bits[width - half :], bits[: width - half]
-    return Mux(upper.any(), _leading_zeros(upper), half + _leading_zeros(lower))
+GROUP = 4
+"""Bits whose leading zeros are counted together."""
+
+
+def _leading_zeros(groups) -> Value:
+    """Of (whether a bit is 1, bits), the uppermost first, as a tree: the count of the upper half of the groups, or its
+    bits and the count of the lower."""
+    if len(groups) == 1:
+        ((_, bits),) = groups
+        zeros = Const(len(bits))
+        for number, bit in enumerate(bits):
+            zeros = Mux(bit, len(bits) - 1 - number, zeros)
+        return zeros
+    half = 1 << (len(groups) - 1).bit_length() - 1
+    upper, lower = groups[:half], groups[half:]
+    some = Cat(bit for bit, _ in upper).any()
+    return Mux(some, _leading_zeros(upper), half * GROUP + _leading_zeros(lower))
 
 
 def shift_left(wire, node, x, count):
@@ -126,12 +137,13 @@ def shift_right(wire, node, x, count):
     target, left = node.fmt, count[-1]
     drop = max(0, node.operands[0].fmt.frac_bits - target.frac_bits)
     x = x << _grown(node)
-    beyond = left & x.any() if node.operands[1].fmt.signed else Const(0)
-    below = Const(0) if never(beyond) else negative(x)
+    some = Cat(x[low : low + 8].any() for low in range(0, len(x), 8)) if node.operands[1].fmt.signed else Const(0)
+    below = Const(0) if never(some) else negative(x)
     count = count[:-1]
     low = len(count) // 4 * 2
     x = _shifted(wire, x, count, low, left=False)
-    x, count, beyond, below = yield x, count[:low], beyond, below
+    x, count, some, left, below = yield x, count[:low], some, left, below
+    beyond = some if never(some) else left & some.any()
     x = _shifted(wire, x, count, left=False)
     x, beyond, below = yield x >> drop, beyond, below
     result, fault = _saturate(target, wire((x + 1) >> 1), x >> 1)

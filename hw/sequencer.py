@@ -23,18 +23,19 @@ class Sequencer(wiring.Component):
         Begin a run of ``steps`` steps, at least 1; only while not ``busy``.
     busy : Out(1), steps_done : Out
         The steps are counted a cycle late.
-    row_valid, row_may, row_last, row_nodes : In(1)
-        A row stands in front (`hw.front.Front`); it was found ready; it is its list's last; all its nodes are among the
-        first ``updated`` of the list.
+    row_valid, row_goes, row_last, row_nodes : In(1)
+        A row stands in front (`hw.front.Front`); it goes in this cycle; it is its list's last; all its nodes are among
+        the first ``updated`` of the list.
     row_behind_nodes : In(1)
         The same of the row behind the front.
     row_ready, row_behind_ready : Out(1)
-        The row in front is ready; the one behind would be, if the one in front went now.
-    row_take : Out(1), row_stage : Out
-    node_valid, node_may, node_last : In(1), node_need : In
-        A node stands in front; it was found ready; it is its list's last; so many rows have to be summed before it.
+        The row in front is ready to go in the next cycle; the one behind would be, if the one in front went now.
+    row_stage : Out
+        Of the row in front.
+    node_valid, node_goes, node_last : In(1), node_need : In
+        A node stands in front; it goes in this cycle; it is its list's last; so many rows have to be summed before it.
     node_behind_last : In(1), node_behind_need : In, node_ready, node_behind_ready : Out(1)
-    node_take : Out(1), node_stage : Out
+    node_stage : Out
     row_summed, node_updated : In(1)
         A row's forces may be read; a node's new state has been written.
     row_summed_last, node_updated_last : In(1)
@@ -54,26 +55,24 @@ class Sequencer(wiring.Component):
                 "busy": Out(1),
                 "steps_done": Out(step_bits),
                 "row_valid": In(1),
-                "row_may": In(1),
+                "row_goes": In(1),
                 "row_last": In(1),
                 "row_nodes": In(1),
                 "row_behind_nodes": In(1),
                 "row_ready": Out(1),
                 "row_behind_ready": Out(1),
-                "row_take": Out(1),
                 "row_stage": Out(STAGE_BITS),
                 "node_waits": Out(1),
                 "list_waits": Out(1),
                 "end_waits": Out(1),
                 "node_valid": In(1),
-                "node_may": In(1),
+                "node_goes": In(1),
                 "node_last": In(1),
                 "node_need": In(row_bits + 1),
                 "node_behind_last": In(1),
                 "node_behind_need": In(row_bits + 1),
                 "node_ready": Out(1),
                 "node_behind_ready": Out(1),
-                "node_take": Out(1),
                 "node_stage": Out(STAGE_BITS),
                 "row_summed": In(1),
                 "row_summed_last": In(1),
@@ -87,6 +86,7 @@ class Sequencer(wiring.Component):
         m = Module()
         last_stage = RK4.stages - 1
         rows_over, nodes_over = Signal(), Signal()
+        last_step = {name: Signal(name=f"{name}_last_step") for name in ("row", "node", "update")}
         row_lead = Signal(2)  # stages that the front row is ahead of the updates
         sum_lead = Signal(2)  # stages that the sums are ahead of the front node
         summed = Signal(len(self.node_need))
@@ -94,26 +94,26 @@ class Sequencer(wiring.Component):
 
         # Behind a list's last entry comes its first, of the next stage
         row_turns, node_turns = self.row_valid & self.row_last, self.node_valid & self.node_last
+        rows_end = rows_over | row_turns & (self.row_stage == last_stage) & last_step["row"]
+        nodes_end = nodes_over | node_turns & (self.node_stage == last_stage) & last_step["node"]
         far = (row_lead == 1) & ~row_turns | (row_lead == 0) & row_turns
         near = (summed >= self.node_behind_need) & ~self.node_behind_last
         m.d.comb += [
-            self.row_ready.eq((row_lead == 0) | (row_lead == 1) & self.row_nodes),
-            self.row_behind_ready.eq((row_lead == 0) & ~row_turns | far & self.row_behind_nodes),
-            self.node_ready.eq((sum_lead != 0) | (summed >= self.node_need) & ~self.node_last),
-            self.node_behind_ready.eq((sum_lead > node_turns) | (sum_lead == node_turns) & near),
-            self.row_take.eq(self.busy & ~rows_over & self.row_valid & self.row_may),
-            self.node_waits.eq(self.busy & ~rows_over & self.row_valid & ~self.row_may),
+            self.row_ready.eq(~rows_over & ((row_lead == 0) | (row_lead == 1) & self.row_nodes)),
+            self.row_behind_ready.eq(~rows_end & ((row_lead == 0) & ~row_turns | far & self.row_behind_nodes)),
+            self.node_ready.eq(~nodes_over & ((sum_lead != 0) | (summed >= self.node_need) & ~self.node_last)),
+            self.node_behind_ready.eq(~nodes_end & ((sum_lead > node_turns) | (sum_lead == node_turns) & near)),
+            self.node_waits.eq(self.busy & ~rows_over & self.row_valid & ~self.row_goes),
             self.list_waits.eq(self.busy & ~rows_over & ~self.row_valid),
             self.end_waits.eq(self.busy & rows_over),
-            self.node_take.eq(self.busy & ~nodes_over & self.node_valid & self.node_may),
         ]
 
         # The rows' stage goes up with the list's last row, the updates' stage with the list's last node
         row_stage_done, sum_stage_done = Signal(), self.row_summed_last
         node_stage_done, update_stage_done = Signal(), self.node_updated_last
         m.d.comb += [
-            row_stage_done.eq(self.row_take & self.row_last),
-            node_stage_done.eq(self.node_take & self.node_last),
+            row_stage_done.eq(self.row_goes & self.row_last),
+            node_stage_done.eq(self.node_goes & self.node_last),
         ]
         m.d.sync += [
             row_lead.eq(row_lead + row_stage_done - update_stage_done),
@@ -135,10 +135,10 @@ class Sequencer(wiring.Component):
             ("node", self.node_stage, node_stage_done),
             ("update", update_stage, update_stage_done),
         ):
-            turn, turned, last = (Signal(name=f"{name}_{what}") for what in ("turn", "turned", "last_step"))
+            turn, turned = Signal(name=f"{name}_turn"), Signal(name=f"{name}_turned")
             left = Signal(len(self.steps), name=f"{name}_steps_left")
             m.d.comb += turn.eq(done & (stage == last_stage))
-            m.d.sync += [turned.eq(turn), last.eq(left == 1)]
+            m.d.sync += [turned.eq(turn), last_step[name].eq(left == 1)]
             with m.If(done):
                 m.d.sync += stage.eq(Mux(turn, 0, stage + 1))
             with m.If(turned):
@@ -147,7 +147,7 @@ class Sequencer(wiring.Component):
                 m.d.sync += self.steps_done.eq(self.steps_done + turned)
             with m.If(self.start):
                 m.d.sync += [turned.eq(0), left.eq(self.steps)]
-            with m.If(turn & last):
+            with m.If(turn & last_step[name]):
                 m.d.sync += {"row": rows_over.eq(1), "node": nodes_over.eq(1), "update": self.busy.eq(0)}[name]
 
         with m.If(self.start):

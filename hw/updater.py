@@ -15,6 +15,7 @@ from .blocks.memory import READ_LATENCY, BlockRam
 from .cost import Cost
 from .delay import DelayLines
 from .edge import fault_names
+from .host import HANDOVER
 from .lane import NODE_WORDS
 from .operations import shape
 from .parameters import Parameters
@@ -86,7 +87,8 @@ class NodeUpdater(wiring.Component):
     fault : Out
         One bit for each name in ``faults``.
     host_* : In / Out
-        Reads and writes of the host, only while no node is under way; see `hw.host`.
+        Reads and writes of the host, only while no node is under way; see `hw.host`. They are `HANDOVER` cycles on
+        their way to the memories.
     """
 
     def __init__(self, parameters: Parameters):
@@ -147,20 +149,25 @@ class NodeUpdater(wiring.Component):
         """What was issued, when its node is in ``cycle`` of the pipeline; its sums are gathered before cycle 0."""
         return self._lines.later(value, GATHERED + cycle, reset=value is self.valid)
 
+    def _host(self, name: str):
+        """What comes from the host, which is far: later by as many registers."""
+        name = f"host_{name}".rstrip("_")
+        return self._lines.later(getattr(self, name), HANDOVER, name=name, reset=True)
+
     def _memory(self, name: str, width: int, arrival: int) -> BlockRam:
         """A word per node, read for ``arrival``, or for the host."""
         ram = BlockRam(width=width, depth=self.parameters.node_rows)
         self._m.submodules[name] = ram
         address = self._later(self.row, arrival - READ_LATENCY)
-        self._m.d.comb += ram.address.eq(Mux(self.host, self.host_index, address))
+        self._m.d.comb += ram.address.eq(Mux(self._host(""), self._host("index"), address))
         return ram
 
     def _host_writes(self, ram: BlockRam, strobe):
-        with self._m.If(self.host):
+        with self._m.If(self._host("")):
             self._m.d.comb += [
                 ram.write.eq(strobe),
-                ram.write_address.eq(self.host_index),
-                ram.write_data.eq(self.host_data),
+                ram.write_address.eq(self._host("index")),
+                ram.write_data.eq(self._host("data")),
             ]
 
     def _memories(self, inputs):
@@ -174,18 +181,18 @@ class NodeUpdater(wiring.Component):
             q = self.parameters.formats.accumulator
             ram = self._memory(f"load_{axis}", q.width, arrival[f"load_{axis}"])
             inputs[f"load_{axis}"] = self._cast(ram.data, q)
-            self._host_writes(ram, self.host_write_load[AXES.index(axis)])
+            self._host_writes(ram, self._host("write_load")[AXES.index(axis)])
             self._m.d.comb += getattr(self, f"host_load_{axis}").eq(ram.data)
         low = 0
         for part, q in self._mass.items():
             name = f"inverse_mass_{part}"
             ram = self._memory(name, q.width, arrival[name])
             inputs[name] = self._cast(ram.data, q)
-            with self._m.If(self.host):
+            with self._m.If(self._host("")):
                 self._m.d.comb += [
-                    ram.write.eq(self.host_write_mass),
-                    ram.write_address.eq(self.host_index),
-                    ram.write_data.eq(self.host_data[low : low + q.width]),
+                    ram.write.eq(self._host("write_mass")),
+                    ram.write_address.eq(self._host("index")),
+                    ram.write_data.eq(self._host("data")[low : low + q.width]),
                 ]
             self._m.d.comb += self.host_mass[low : low + q.width].eq(ram.data)
             low += q.width
@@ -214,7 +221,7 @@ class NodeUpdater(wiring.Component):
         for number, word in enumerate(NODE_WORDS):
             quantity, axis = word.split("_")
             base = memories[f"{quantity}_base_{axis}"]
-            strobe = self.host_write_state[number]
+            strobe = self._host("write_state")[number]
             m.d.comb += getattr(self, f"update_{word}").eq(pipe.output(word, done))
             m.d.comb += getattr(self, f"host_{word}").eq(base.data)
             self._host_writes(base, strobe)
@@ -225,4 +232,4 @@ class NodeUpdater(wiring.Component):
             force = BlockRam(width=self.parameters.formats.state, depth=self.parameters.node_rows)
             m.submodules[f"force_{axis}"] = force
             written(force, f"force_{axis}")
-            m.d.comb += [force.address.eq(self.host_index), getattr(self, f"host_force_{axis}").eq(force.data)]
+            m.d.comb += [force.address.eq(self._host("index")), getattr(self, f"host_force_{axis}").eq(force.data)]

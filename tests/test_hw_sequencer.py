@@ -10,6 +10,7 @@ from golden.rk4 import RK4
 from hw.sequencer import Sequencer
 
 ROW_BITS, NODE_BITS = 6, 5
+READY = "row_ready", "row_behind_ready", "node_ready", "node_behind_ready"
 
 
 @dataclass
@@ -48,7 +49,7 @@ class Run:
         self.row_latency, self.node_latency = latencies
         self._ready, self._rng = ready, rng
         self.rows_taken = self.nodes_taken = 0
-        self._standing, self._may = [False, False], [False, False]  # in front: a row, a node (`hw.front.Front`)
+        self._standing, self._goes = [False, False], [False, False]  # in front: a row, a node (`hw.front.Front`)
         self.rows_summed = self.nodes_updated = 0  # over all stages, before this cycle
         self.cycles = self.waits = 0
 
@@ -73,7 +74,7 @@ class Run:
         for _ in range(3):  # it stays so
             await ctx.tick()
             assert ctx.get(dut.steps_done) == self.steps
-            assert not ctx.get(dut.busy) and not ctx.get(dut.row_take) and not ctx.get(dut.node_take)
+            assert not ctx.get(dut.busy) and not any(ctx.get(getattr(dut, name)) for name in READY)
 
     def _cycle(self, ctx, summed, updated):
         dut, lists = self.dut, self.lists
@@ -87,18 +88,17 @@ class Run:
         ctx.set(dut.node_updated, updated)
         ctx.set(dut.node_updated_last, updates_last)
         ctx.set(dut.row_valid, row_valid)
-        ctx.set(dut.row_may, self._may[0])
+        ctx.set(dut.row_goes, self._goes[0])
         ctx.set(dut.row_last, row == len(lists.rows) - 1)
         ctx.set(dut.row_nodes, all(n < ctx.get(dut.updated) for n in lists.rows[row]))
         ctx.set(dut.row_behind_nodes, all(n < ctx.get(dut.updated) for n in lists.rows[behind[0]]))
         ctx.set(dut.node_valid, node_valid)
-        ctx.set(dut.node_may, self._may[1])
+        ctx.set(dut.node_goes, self._goes[1])
         ctx.set(dut.node_last, node == lists.nodes - 1)
         ctx.set(dut.node_need, lists.told[node])
         ctx.set(dut.node_behind_last, behind[1] == lists.nodes - 1)
         ctx.set(dut.node_behind_need, lists.told[behind[1]])
-        row_take, node_take = ctx.get(dut.row_take), ctx.get(dut.node_take)
-        assert row_take <= row_valid and node_take <= node_valid
+        row_take, node_take = self._goes
         if row_take:
             assert row_stage < RK4.stages * self.steps
             assert ctx.get(dut.row_stage) == row_stage % RK4.stages
@@ -113,9 +113,9 @@ class Run:
         for k, (name, take) in enumerate((("row", row_take), ("node", node_take))):
             if take or not self._standing[k]:
                 self._standing[k] = bool(self._rng.random() < self._ready)
-                self._may[k] = self._standing[k] and bool(ctx.get(getattr(dut, f"{name}_behind_ready")))
+                self._goes[k] = self._standing[k] and bool(ctx.get(getattr(dut, f"{name}_behind_ready")))
             else:
-                self._may[k] |= bool(ctx.get(getattr(dut, f"{name}_ready")))
+                self._goes[k] |= bool(ctx.get(getattr(dut, f"{name}_ready")))
         waits = ctx.get(dut.node_waits)
         assert waits <= row_valid and not (waits and row_take)
         self.waits += waits

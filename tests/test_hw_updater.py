@@ -14,6 +14,7 @@ from golden.qarray import QArray
 from golden.qformat import BIT
 from golden.rk4 import RK4
 from hw.blocks.memory import READ_LATENCY
+from hw.host import HANDOVER
 from hw.lane import NODE_WORDS
 from hw.parameters import Parameters
 from hw.updater import NodeUpdater
@@ -68,6 +69,7 @@ class Bench:
             ctx.set(self.dut.host_data, int(value))
             await ctx.tick()
         ctx.set(strobe, 0)
+        await ctx.tick().repeat(HANDOVER)
 
     async def load(self, ctx):
         dut, nodes = self.dut, self.nodes
@@ -80,6 +82,7 @@ class Bench:
         packed = [records.pack(mass, {name: nodes.mass[name][n] for name in mass}) for n in range(NODES)]
         await self.write(ctx, dut.host_write_mass, 0, packed)
         ctx.set(dut.host, 0)
+        await ctx.tick().repeat(HANDOVER)
         return packed
 
     async def stage(self, ctx, number):
@@ -115,12 +118,13 @@ class Bench:
     async def read(self, ctx, port):
         seen = []
         ctx.set(self.dut.host, 1)
-        for index in [*range(NODES), *[0] * READ_LATENCY]:
+        for index in [*range(NODES), *[0] * (HANDOVER + READ_LATENCY)]:
             seen.append(ctx.get(port))
             ctx.set(self.dut.host_index, index)
             await ctx.tick()
         ctx.set(self.dut.host, 0)
-        return seen[READ_LATENCY:]
+        await ctx.tick().repeat(HANDOVER)
+        return seen[HANDOVER + READ_LATENCY :]
 
 
 @pytest.mark.parametrize(("lanes", "order", "widest_gap"), [(1, "up", 0), (2, "any", 2)])

