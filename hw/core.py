@@ -9,7 +9,8 @@ from amaranth.lib.wiring import In, Out
 from golden import records
 from golden.graph import AXES
 
-from .blocks.memory import BlockRam
+from .blocks import highest
+from .blocks.memory import READ_LATENCY, BlockRam
 from .choice import choose
 from .delay import DelayLines
 from .edge import EdgeDatapath
@@ -22,6 +23,11 @@ from .parameters import Parameters
 from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from .sequencer import Sequencer
 from .updater import NodeUpdater
+
+
+def row_latency(parameters: Parameters) -> int:
+    """Cycles from a row's address to its edges and the highest of their nodes."""
+    return READ_LATENCY + highest.latency(2 * parameters.lanes)
 
 
 class Core(wiring.Component):
@@ -134,26 +140,29 @@ class Core(wiring.Component):
         m, p, host, sequencer = self._m, self.parameters, self._host, self._sequencer
         record = records.edge_entry()
         width = records.width(record)
-        m.submodules.row_fetch = fetch = Fetch(index_bits=p.row_bits, width=width * p.lanes)
+        m.submodules.row_highest = last = highest.Highest(count=2 * p.lanes, width=p.node_row_bits)
+        size = width * p.lanes + p.node_row_bits
+        m.submodules.row_fetch = fetch = Fetch(index_bits=p.row_bits, width=size, data_latency=row_latency(p))
         words = []
         for number in range(p.lanes):
             ram = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._index)
             m.d.comb += ram.write.eq(self._strobe(Region.EDGE, 0, number))
             words.append(ram.data)
         self._edge_entries = words
-        m.d.comb += [fetch.count.eq(host.rows), fetch.data.eq(Cat(*words))]
+        edges = [unpack(record, word) for word in words]
+        behind_memory = row_latency(p) - READ_LATENCY
+        later = [self._lines.later(word, behind_memory, name=f"edge_entry{n}") for n, word in enumerate(words)]
+        m.d.comb += [
+            last.valid.eq(Cat(edge["valid"].replicate(2) for edge in edges)),
+            last.numbers.eq(Cat(p.node_place(edge[end])[0][: p.node_row_bits] for edge in edges for end in "ij")),
+            fetch.count.eq(host.rows),
+            fetch.data.eq(Cat(*later, last.highest)),
+        ]
         front, behind = self._front("row", fetch)
 
-        def entries(word):
-            return [unpack(record, word[n * width : (n + 1) * width]) for n in range(p.lanes)]
-
-        def updated(word):
-            """Whether all nodes of a row are."""
-            ends = [(entry["valid"], p.node_place(entry[end])[0]) for entry in entries(word) for end in "ij"]
-            return Cat(~valid | (row < sequencer.updated) for valid, row in ends).all()
-
-        self._valid = [entry["valid"] for entry in entries(front.word)]
-        for lane, entry in zip(self._lanes, entries(front.word), strict=True):
+        entries = [unpack(record, front.word[n * width : (n + 1) * width]) for n in range(p.lanes)]
+        self._valid = [entry["valid"] for entry in entries]
+        for lane, entry in zip(self._lanes, entries, strict=True):
             m.d.comb += [
                 lane.valid.eq(sequencer.row_goes & entry["valid"]),
                 lane.row.eq(front.index),
@@ -163,8 +172,8 @@ class Core(wiring.Component):
             ]
         m.d.comb += [
             sequencer.row_last.eq(front.last),
-            sequencer.row_nodes.eq(updated(front.word)),
-            sequencer.row_behind_nodes.eq(updated(behind.word)),
+            sequencer.row_nodes.eq(front.word[width * p.lanes :] < sequencer.updated),
+            sequencer.row_behind_nodes.eq(behind.word[width * p.lanes :] < sequencer.updated),
         ]
 
     def _nodes(self):

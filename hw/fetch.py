@@ -7,12 +7,22 @@ from amaranth.lib.wiring import In, Out
 from .blocks.memory import READ_LATENCY
 from .blocks.queue import Queue
 
-LATENCY = READ_LATENCY + 1
-"""Cycles from the end of the flush to the first entry."""
+
+def latency(data_latency: int) -> int:
+    """Cycles from the end of the flush to the first entry."""
+    return data_latency + 1
 
 
 class Fetch(wiring.Component):
     """Entries 0 to ``count - 1`` of a memory over and over, one a cycle, each with its place in the list.
+
+    Parameters
+    ----------
+    index_bits, width : int
+    data_latency : int
+        Of the memory, and of what is made of its words.
+
+    The first entry comes `latency` cycles after the end of the flush.
 
     Members
     -------
@@ -21,15 +31,15 @@ class Fetch(wiring.Component):
     count : In
         Entries of the list, at least 1.
     address : Out, data : In
-        To the memory, whose latency is `READ_LATENCY`.
+        To the memory.
     valid : Out(1), take : In(1)
         There is an entry; it is taken.
     index, last, word : Out
         The entry: its place, whether it is the list's last, and what the memory holds there.
     """
 
-    def __init__(self, *, index_bits: int, width: int):
-        self._width = width
+    def __init__(self, *, index_bits: int, width: int, data_latency: int = READ_LATENCY):
+        self._data_latency = data_latency
         self.kind = f"fetch_{width}"
         super().__init__(
             {
@@ -47,7 +57,7 @@ class Fetch(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        depth = 4 * READ_LATENCY
+        depth = 1 << (self._data_latency + 3).bit_length()  # enough for an entry a cycle
         entry = Cat(self.word, self.last, self.index)
         m.submodules.queue = queue = Queue(width=len(entry), depth=depth)
         under_way = Signal(range(depth + 1))  # entries asked for and not yet taken
@@ -66,7 +76,7 @@ class Fetch(wiring.Component):
                     m.d.sync += self.address.eq(0)
 
         tag, arrived = Cat(last, self.address), ask
-        for k in range(READ_LATENCY):
+        for k in range(self._data_latency):
             tag_next, arrived_next = Signal(len(tag), name=f"tag_{k}"), Signal(name=f"arrived_{k}")
             m.d.sync += [tag_next.eq(tag), arrived_next.eq(arrived & ~self.flush)]
             tag, arrived = tag_next, arrived_next

@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 
+from . import fetch
 from .blocks.memory import READ_LATENCY
-from .core import Core
+from .core import Core, row_latency
 from .edge import EdgeDatapath
 from .front import LATENCY as FRONT_LATENCY
+from .host import HANDOVER
 from .host import LATENCY as HOST_LATENCY
 from .lane import COPIED, NEXT, written
 from .lane import latency as sums_latency
@@ -15,15 +17,19 @@ from .updater import NodeDatapath
 
 @dataclass(frozen=True)
 class Latencies:
-    """Cycles from the issue of an edge to the nodes that may go then, and from that of a node to the edges."""
+    """Cycles from the issue of an edge to the nodes that may go then, and from that of a node to the edges; from the
+    start of a run to the first row of edges and the first of nodes, if nothing keeps them."""
 
     edge: int
     node: int
+    rows: int
+    nodes: int
 
     @classmethod
     def of(cls, p: Parameters) -> "Latencies":
         edge, node = EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
-        return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + COPIED + 1 + FRONT_LATENCY)
+        rows, nodes = (HANDOVER + fetch.latency(data) + FRONT_LATENCY for data in (row_latency(p), READ_LATENCY))
+        return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + COPIED + 1 + FRONT_LATENCY, rows, nodes)
 
 
 def latencies(core: Core) -> list[tuple[str, str, int]]:

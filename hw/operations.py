@@ -134,11 +134,12 @@ def round_half_up(wire, node, x):
 
 def shift_right(wire, node, x, count):
     """Rounds and saturates ``x * 2**-count``, the count as `shift_count` gives it; second value: the fault."""
-    target, left = node.fmt, count[-1]
+    target = node.fmt
     drop = max(0, node.operands[0].fmt.frac_bits - target.frac_bits)
     x = x << _grown(node)
-    some = Cat(x[low : low + 8].any() for low in range(0, len(x), 8)) if node.operands[1].fmt.signed else Const(0)
-    below = Const(0) if never(some) else negative(x)
+    some = left = below = Const(0)
+    if node.operands[1].fmt.signed:
+        some, left, below = Cat(x[low : low + 8].any() for low in range(0, len(x), 8)), count[-1], negative(x)
     count = count[:-1]
     low = len(count) // 4 * 2
     x = _shifted(wire, x, count, low, left=False)

@@ -10,9 +10,7 @@ from golden.errors import InputError
 from golden.image import Image
 from golden.problem import Scene
 from golden.rk4 import RK4
-from hw.fetch import LATENCY as FETCH_LATENCY
 from hw.front import LATENCY as FRONT_LATENCY
-from hw.host import HANDOVER
 from hw.latency import Latencies
 from hw.parameters import Parameters
 
@@ -42,7 +40,7 @@ class Wavefront:
     def run(self, steps: int) -> np.ndarray:
         """(steps,) the first cycle after each step of a run; the last is what the circuit's counter says."""
         updated = np.full(len(self._need), 0)
-        last_row = last_node = HANDOVER + FETCH_LATENCY + FRONT_LATENCY - 1
+        last_row, last_node = self.latencies.rows - 1, self.latencies.nodes - 1
         ends = []
         for stage in range(steps * RK4.stages):
             rows = in_turn(updated[self._highest] if stage else np.zeros(self.rows, np.int64), last_row + 1)

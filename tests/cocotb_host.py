@@ -10,6 +10,7 @@ from integer_objects import MATERIALS, irregular, pressed
 
 from golden import records
 from golden.machine import Machine
+from hw.host import LATENCY
 from hw.parameters import Parameters
 from hw.registers import NODE_FORCE, NODE_STATE, Control, Map, Region, join
 from sim.image import load
@@ -20,7 +21,6 @@ MAP = Map(PARAMETERS)
 SEED = 1
 OBJECTS = {"2-D": ((3, 3), "rheological-force"), "3-D": ((2, 2, 2), "rheological"), "small": ((2, 2), "rheological")}
 STATE = (*NODE_STATE, *NODE_FORCE)
-LAST_ANSWER = 12  # cycles after which no request is without an answer
 
 
 class Host:
@@ -51,7 +51,7 @@ class Host:
             self.dut.address.value, self.dut.write_data.value = address, data
             answers.append(await self.cycle())
         self.dut.request.value = 0
-        for _ in range(LAST_ANSWER):
+        for _ in range(LATENCY):
             answers.append(await self.cycle())
         answers = [answer for answer in answers if answer]
         assert len(answers) == len(requests)
@@ -90,7 +90,7 @@ class Host:
         counted = np.zeros(6, int)
         while int(self.dut.busy.value):
             sequencer = self.dut.sequencer
-            row = int(sequencer.row_take.value)
+            row = int(sequencer.row_goes.value)
             edges = row * sum(int(getattr(self.dut, f"lane{n}_valid").value) for n in range(PARAMETERS.lanes))
             waits = [int(getattr(sequencer, f"{why}_waits").value) for why in ("node", "list", "end")]
             counted += [1, row, edges, *waits]

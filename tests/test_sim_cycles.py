@@ -46,6 +46,6 @@ def test_a_step_takes_no_less_than_its_rows_its_nodes_and_its_loop(lanes):
 
 
 def test_with_latencies_of_nothing_the_longer_list_says_how_long_a_step_takes():
-    model, image = wavefront((9, 9), 1, latencies=Latencies(0, 0))
+    model, image = wavefront((9, 9), 1, latencies=Latencies(0, 0, 0, 0))
     assert model.per_step() == RK4.stages * len(image.edges)
     assert model.run(3)[-1] + FRONT_LATENCY >= 3 * model.per_step()
