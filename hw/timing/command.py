@@ -14,6 +14,7 @@ from .result import KEPT, PARAMETERS, Result, Smallest, table, write
 ROOT = Path(__file__).parents[2]
 OUT = ROOT / "build" / "timing"
 SEEDS = [1, 2, 3]
+MOST_JOBS = 64
 
 
 def add_options(command, whole: Callable[[str], int]) -> None:
@@ -24,6 +25,7 @@ def add_options(command, whole: Callable[[str], int]) -> None:
         command.add_argument(f"--{name}", type=whole, metavar="N", help="instead of the board's")
     command.add_argument("--seeds", type=whole, nargs="+", default=SEEDS, metavar="N",
                          help="place and route so often, from these (1 2 3)")
+    command.add_argument("--jobs", type=whole, default=1, metavar="N", help="seeds at a time (1), 2 GB of memory each")
     command.add_argument("--keep", action="store_true", help="write the figures below constraints/timing/ as well")
     command.set_defaults(run=run)
 
@@ -43,10 +45,12 @@ def run(args) -> int:
     except ValueError as error:
         raise InputError(f"--{error}") from None
     seeds = _checked_seeds(args.seeds)
+    if not 1 <= args.jobs <= MOST_JOBS:
+        raise InputError(f"--jobs must be 1 to {MOST_JOBS}, not {args.jobs}")
     if args.keep and (parameters != board.parameters() or len(seeds) < len(SEEDS)):
         raise InputError(f"--keep must be of the board's own circuit and at least {len(SEEDS)} seeds")
     with progress(1 + len(seeds)) as shown:
-        result = flow.measure(args.board, board, parameters, seeds, OUT, shown)
+        result = flow.measure(args.board, board, parameters, seeds, OUT, shown, args.jobs)
     print(table(result, board))
     return _written(args.board, result, args.keep)
 

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from statistics import median
 
@@ -17,8 +18,8 @@ SMALLEST = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1, family
 
 
 def measure(name: str, board: Board, parameters: Parameters, seeds: list[int], folder: Path,
-            shown: Callable[[str], None]) -> Result:
-    """Everything a `Result` holds; ``shown`` is told what is being done.
+            shown: Callable[[str], None], jobs: int = 1) -> Result:
+    """Everything a `Result` holds; ``shown`` is told what is being done, ``jobs`` seeds at a time.
 
     Raises
     ------
@@ -29,10 +30,13 @@ def measure(name: str, board: Board, parameters: Parameters, seeds: list[int], f
     verilog = framed(parameters)
     synthesised, frame = report.sizes(tools.synthesise(verilog, folder, name))
     _fits(name, board, synthesised)
-    reports = []
-    for seed in seeds:
+
+    def placed(seed: int) -> dict:
         shown(f"seed {seed}")
-        reports.append(tools.place_and_route(board, folder, name, seed))
+        return tools.place_and_route(board, folder, name, seed)
+
+    with ThreadPoolExecutor(jobs) as pool:
+        reports = list(pool.map(placed, seeds))
     clocks = [report.fmax(found) for found in reports]
     middle = sorted(clocks)[(len(clocks) - 1) // 2]
     limits, sizes = board.limits_mhz, report.placed(reports[0]) - frame
