@@ -292,6 +292,7 @@ class Core(wiring.Component):
         m.d.comb += [
             sequencer.start.eq(host.start),
             sequencer.steps.eq(host.steps),
+            sequencer.stop.eq(host.stop),
             host.busy.eq(sequencer.busy),
             host.steps_done.eq(sequencer.steps_done),
         ]

@@ -35,6 +35,9 @@ LATENCY = 4 + MEMORY + 3 * CHOICE
 """Cycles from a request to its answer: request register, three of decoding, the memory, the choices."""
 
 
+ANYTIME = Control.FAULTS, Control.REFUSED, Control.STOP
+"""Control registers that may be written while the machine is busy."""
+
 WRITABLE = [register for register in Control if register not in READ_ONLY]
 
 
@@ -55,7 +58,8 @@ class HostPort(wiring.Component):
     """Takes a request per cycle, answers each `LATENCY` cycles later, in order.
 
     A request out of range, a write to a read-only word, any access to a memory while the machine is busy, and a run of
-    nothing are refused: the answer is an error, the refusal is counted, nothing is changed.
+    nothing are refused: the answer is an error, the refusal is counted, nothing is changed. What may be written while
+    it is busy is in `ANYTIME`.
 
     Members
     -------
@@ -67,7 +71,7 @@ class HostPort(wiring.Component):
         One bit a region: it is a write to that region.
     <region>_word : In
         What the region's memories hold at the access's address, `MEMORY` + 2 `CHOICE` cycles later.
-    start, steps : Out
+    start, steps, stop : Out
     busy, <counters of `hw.registers.COUNTERS`>, steps_done, fault : In
     rows, nodes, velocity_shift : Out
     """
@@ -87,6 +91,7 @@ class HostPort(wiring.Component):
                 **{word_of(region): In(state) for region in Region if region != Region.CONTROL},
                 "start": Out(1),
                 "steps": Out(32),
+                "stop": Out(1),
                 "busy": In(1),
                 **{name: In(state) for name in COUNTERS.values()},
                 "steps_done": In(32),
@@ -119,7 +124,7 @@ class HostPort(wiring.Component):
         controls = region == Region.CONTROL
         writes = Cat(controls & write & (index == register) for register in WRITABLE)
         strobes = Cat(write & (region == r) for r in Region)
-        anytime = controls & (~write | (index == Control.FAULTS) | (index == Control.REFUSED))
+        anytime = controls & (~write | Cat(index == register for register in ANYTIME).any())
         possible = request & Array(possible)[region]
         request, index, word, lane, region, data, possible, writes, strobes, anytime = self._registered(
             m, "now", request, index, word, lane, region, data, possible, writes, strobes, anytime
@@ -137,7 +142,8 @@ class HostPort(wiring.Component):
         refused, refuse = Signal(32), Signal()
         m.d.sync += [self.index.eq(index), self.data.eq(data), self.word.eq(word), self.lane.eq(lane)]
         m.d.sync += [self.strobe.eq(Mux(go, strobes, 0)), written.eq(Mux(go, writes, 0))]
-        m.d.sync += [self.start.eq(starting), refuse.eq(request & ~go)]
+        stopping = written[WRITABLE.index(Control.STOP)]
+        m.d.sync += [self.start.eq(starting), self.stop.eq(stopping), refuse.eq(request & ~go)]
         m.d.sync += refused.eq(refused + refuse)
         self._control_writes(m, dict(zip(WRITABLE, written, strict=True)), refused)
 
@@ -171,6 +177,7 @@ class HostPort(wiring.Component):
                 {
                     Control.FAULTS: Const(1),
                     Control.REFUSED: Const(1),
+                    Control.STOP: Const(1),
                     Control.ROW_COUNT: (data != 0) & (data <= p.rows),
                     Control.NODE_COUNT: (data != 0) & (data <= p.nodes),
                     Control.VELOCITY_SHIFT: data < 1 << p.formats.exponent.width - 1,
@@ -217,6 +224,7 @@ class HostPort(wiring.Component):
             Control.NODE_COUNT: self.nodes,
             Control.VELOCITY_SHIFT: self.velocity_shift,
             Control.RUN: Const(0, state),
+            Control.STOP: Const(0, state),
         }
         return [values[control] for control in Control]
 

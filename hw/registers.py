@@ -49,6 +49,7 @@ class Control(IntEnum):
     NODE_COUNT = 19
     VELOCITY_SHIFT = 20
     RUN = 21
+    STOP = 22
 
 
 READ_ONLY = frozenset(control for control in Control if control <= Control.STEPS_DONE)
@@ -76,6 +77,7 @@ CONTROL_TEXT = {
     Control.NODE_COUNT: "nodes in use, at least 1",
     Control.VELOCITY_SHIFT: "the velocity full scale is 2^-this sizes per step",
     Control.RUN: "a write runs so many steps, at least 1",
+    Control.STOP: "any write ends the run with its step or the next; then `STEPS_DONE` says how many were done",
 }
 
 COUNTERS = {

@@ -21,6 +21,8 @@ class Sequencer(wiring.Component):
     -------
     start : In(1), steps : In
         Begin a run of ``steps`` steps, at least 1; only while not ``busy``.
+    stop : In(1)
+        End the run with the step that the updates are in, or with the next if they are past its first stage.
     busy : Out(1), steps_done : Out
         The steps are counted a cycle late.
     row_valid, row_goes, row_last, row_nodes : In(1)
@@ -52,6 +54,7 @@ class Sequencer(wiring.Component):
             {
                 "start": In(1),
                 "steps": In(step_bits),
+                "stop": In(1),
                 "busy": Out(1),
                 "steps_done": Out(step_bits),
                 "row_valid": In(1),
@@ -128,6 +131,12 @@ class Sequencer(wiring.Component):
             with m.If(update_stage_done):
                 m.d.sync += self.updated.eq(0)
 
+        # While the updates are in a step's first stage, rows and nodes are in the same step, none of them near its end
+        stopping, stops = Signal(), Signal()
+        m.d.comb += stops.eq(stopping & (update_stage == 0))
+        with m.If(self.stop):
+            m.d.sync += stopping.eq(1)
+
         # A step's last stage is over, of its rows, nodes and updates. The steps are counted a cycle later: each is
         # longer than the cycles that it takes to see which is the last
         for name, stage, done in (
@@ -143,6 +152,8 @@ class Sequencer(wiring.Component):
                 m.d.sync += stage.eq(Mux(turn, 0, stage + 1))
             with m.If(turned):
                 m.d.sync += left.eq(left - 1)
+            with m.If(stops):
+                m.d.sync += left.eq(1)
             if name == "update":
                 m.d.sync += self.steps_done.eq(self.steps_done + turned)
             with m.If(self.start):
@@ -153,5 +164,6 @@ class Sequencer(wiring.Component):
         with m.If(self.start):
             m.d.sync += [signal.eq(0) for signal in (self.row_stage, self.node_stage, update_stage, self.updated)]
             m.d.sync += [signal.eq(0) for signal in (row_lead, sum_lead, summed, rows_over, nodes_over)]
+            m.d.sync += stopping.eq(0)
             m.d.sync += [self.busy.eq(1), self.steps_done.eq(0)]
         return m

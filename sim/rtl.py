@@ -119,7 +119,7 @@ class RtlMachine:
         self.circuit.write(self._program.load())
         self.circuit.write(self._program.start(image.v, image.x))
         self.faults, self.cycles = Counter(), 0
-        self._fetch()
+        self.fetch()
         self.force = np.zeros_like(image.x)
 
     def restart(self, v: np.ndarray):
@@ -130,7 +130,7 @@ class RtlMachine:
     def step(self, steps: int = 1):
         self.circuit.write([(self._control(Control.RUN), steps)])
         self.circuit.wait()
-        self._fetch()
+        self.fetch()
         cycles, faults = self.circuit.read([self._control(r) for r in (Control.CYCLES, Control.FAULTS)])
         self.cycles += int(cycles)
         self.faults |= Counter({name: 1 for bit, name in enumerate(self.circuit.faults) if int(faults) >> bit & 1})
@@ -141,7 +141,8 @@ class RtlMachine:
     def _control(self, register):
         return self._map.address(Region.CONTROL, 0, register)
 
-    def _fetch(self):
+    def fetch(self):
+        """Read the object's state as the circuit has it now; refused while it runs."""
         names = (*NODE_STATE, *NODE_FORCE)
         addresses = [a for name in names for a in self._program.node_addresses(name)]
         nodes = self._signed(self.circuit.read(addresses)).reshape(len(names), -1).T

@@ -31,7 +31,8 @@ async def a_reset_circuit_says_what_it_is(dut):
     expected = {
         Control.MAGIC: MAGIC, Control.VERSION: VERSION, Control.LANES: 2, Control.UPDATES: 1, Control.NODES: 16,
         Control.ROWS: 32, Control.MATERIALS: 2, Control.TABLES: 1, Control.BUSY: 0, Control.REFUSED: 0, Control.RUN: 0,
-        Control.ROW_COUNT: 0, Control.NODE_COUNT: 0, Control.CYCLES: 0, Control.STEPS_DONE: 0, Control.FAULTS: 0,
+        Control.STOP: 0, Control.ROW_COUNT: 0, Control.NODE_COUNT: 0, Control.CYCLES: 0, Control.STEPS_DONE: 0,
+        Control.FAULTS: 0,
     }
     assert await host.read([control(register) for register in expected]) == list(expected.values())
     await host.refused([(1, control(Control.RUN), 1)])  # nothing is loaded

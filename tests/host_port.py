@@ -27,7 +27,7 @@ class Port:
 
     def __init__(self):
         self.dut = HostPort(MAP, FAULTS)
-        self.strobes, self.starts = [], 0
+        self.strobes, self.starts, self.stops = [], 0, 0
         self._asked = [(0, 0, 0)] * (MEMORY + 2 * CHOICE)
 
     async def cycle(self, ctx):
@@ -40,6 +40,7 @@ class Port:
         if strobe > 1 << Region.CONTROL:
             self.strobes.append((Region(strobe.bit_length() - 1), *self._asked[-1], ctx.get(dut.data)))
         self.starts += ctx.get(dut.start)
+        self.stops += ctx.get(dut.stop)
         await ctx.tick()
 
     async def request(self, ctx, write, address, data=0):

@@ -5,7 +5,7 @@ import pytest
 from host_port import FAULTS, MAP, MEMORIES, STATE, P, Port, content, control, use
 from hw_objects import simulate
 
-from hw.host import LATENCY
+from hw.host import ANYTIME, LATENCY
 from hw.registers import COUNTERS as NAMES
 from hw.registers import MAGIC, READ_ONLY, VERSION, Control, Region, join
 
@@ -126,13 +126,24 @@ def test_a_run_starts_once(steps):
     use(scenario)
 
 
+def test_a_run_can_be_stopped_and_faults_and_refusals_cleared_while_it_goes_on():
+    async def scenario(ctx, port):
+        ctx.set(port.dut.busy, 1)
+        for register in ANYTIME:
+            assert (await port.request(ctx, 1, control(register), 1))[0] is False
+            assert port.stops == (register == Control.STOP)
+        assert await port.read(ctx, Control.REFUSED) == 0
+
+    use(scenario)
+
+
 def test_registers_read_what_they_say():
     async def scenario(ctx, port):
         for name, value in COUNTERS.values():
             ctx.set(getattr(port.dut, name), value)
         expected = FIXED | {register: value for register, (_, value) in COUNTERS.items()}
         expected |= {Control.ROW_COUNT: 7, Control.NODE_COUNT: 9, Control.VELOCITY_SHIFT: 12, Control.RUN: 0,
-                     Control.FAULTS: 0, Control.REFUSED: 0, Control.BUSY: 0}
+                     Control.STOP: 0, Control.FAULTS: 0, Control.REFUSED: 0, Control.BUSY: 0}
         assert expected.keys() == set(Control)
         assert {register: await port.read(ctx, register) for register in Control} == expected
         assert (ctx.get(port.dut.rows), ctx.get(port.dut.nodes), ctx.get(port.dut.velocity_shift)) == (7, 9, 12)

@@ -69,7 +69,7 @@ def test_an_address_is_put_together_as_the_fields_say(contents):
 
 def test_capacities(regions):
     sizes = {name: (region["depth"], region["lanes"]) for name, region in regions.items()}
-    assert sizes == {"CONTROL": (22, 1), "NODE": (20, 1), "EDGE": (11, 3), "MATERIAL": (5, 3), "TABLE": (1024, 3)}
+    assert sizes == {"CONTROL": (23, 1), "NODE": (20, 1), "EDGE": (11, 3), "MATERIAL": (5, 3), "TABLE": (1024, 3)}
 
 
 def test_fields_are_packed_from_the_lowest_bit(regions):
@@ -114,7 +114,7 @@ def test_registers(contents):
     registers = contents["registers"]
     assert [(r["index"], r["name"], r["meaning"]) for r in registers] == [(c, c.name, CONTROL_TEXT[c]) for c in Control]
     writable = {r["name"] for r in registers if not r["read_only"]}
-    assert writable == {"FAULTS", "REFUSED", "ROW_COUNT", "NODE_COUNT", "VELOCITY_SHIFT", "RUN"}
+    assert writable == {"FAULTS", "REFUSED", "ROW_COUNT", "NODE_COUNT", "VELOCITY_SHIFT", "RUN", "STOP"}
 
 
 def test_only_forces_are_read_only(regions):

@@ -44,7 +44,8 @@ def random_lists(rng, nodes, rows, lanes, kind) -> Lists:
 class Run:
     """A sequencer with lists in front of it and pipelines of given lengths behind it, watched in every cycle."""
 
-    def __init__(self, dut, lists: Lists, steps, latencies, ready, rng):
+    def __init__(self, dut, lists: Lists, steps, latencies, ready, rng, stop=None):
+        self._stop = stop  # the cycle in which it is told to stop
         self.dut, self.lists, self.steps = dut, lists, steps
         self.row_latency, self.node_latency = latencies
         self._ready, self._rng = ready, rng
@@ -63,18 +64,26 @@ class Run:
         loop = self.row_latency + self.node_latency + 8
         limit = RK4.stages * self.steps * (len(lists.rows) + lists.nodes) * loop
         while ctx.get(dut.busy):
+            if self.cycles == self._stop:
+                self.steps = min(self.steps, self.nodes_updated // (RK4.stages * lists.nodes) + 2)
+            ctx.set(dut.stop, self.cycles == self._stop)
             taken = self._cycle(ctx, row_line[0], node_line[0])
             row_line, node_line = [*row_line[1:], taken[0]], [*node_line[1:], taken[1]]
             self.cycles += 1
             assert self.cycles < limit, "the lists don't come to their end"
             await ctx.tick()
+        ctx.set(dut.stop, 0)
+        await ctx.tick()
+        if self._stop is not None:
+            assert ctx.get(dut.steps_done) in (self.steps, self.steps - 1)
+            self.steps = ctx.get(dut.steps_done)
         stages = RK4.stages * self.steps
         assert (self.rows_taken, self.nodes_taken) == (stages * len(lists.rows), stages * lists.nodes)
         assert (self.rows_summed, self.nodes_updated) == (self.rows_taken, self.nodes_taken)
         for _ in range(3):  # it stays so
-            await ctx.tick()
             assert ctx.get(dut.steps_done) == self.steps
             assert not ctx.get(dut.busy) and not any(ctx.get(getattr(dut, name)) for name in READY)
+            await ctx.tick()
 
     def _cycle(self, ctx, summed, updated):
         dut, lists = self.dut, self.lists
@@ -148,6 +157,17 @@ def test_random_lists(kind, ready, latencies, rng):
         lists = random_lists(rng, int(rng.integers(2, 20)), int(rng.integers(1, 25)), int(rng.integers(1, 4)), kind)
         runs.append(Run(dut, lists, int(rng.integers(1, 4)), latencies, ready, rng))
     watched(*runs)
+
+
+@pytest.mark.parametrize("kind", ["sorted", "backwards", "empty"])
+@pytest.mark.parametrize("latencies", [(1, 1), (12, 5)], ids=str)
+def test_a_run_that_is_stopped_ends_with_a_step_at_most_one_later(kind, latencies, rng):
+    dut, runs = sequencer(), []
+    for _ in range(60):  # one after the other, on the same circuit
+        lists = random_lists(rng, int(rng.integers(2, 6)), int(rng.integers(1, 6)), int(rng.integers(1, 4)), kind)
+        runs.append(Run(dut, lists, 50, latencies, 1.0, rng, stop=int(rng.integers(0, 400))))
+    watched(*runs)
+    assert len({run.steps for run in runs}) >= 6
 
 
 @pytest.mark.parametrize("nodes", [2, 1 << NODE_BITS])

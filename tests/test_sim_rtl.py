@@ -9,8 +9,10 @@ from rtl_objects import STATE, assert_same, circuit, renumbered, run, scene
 
 from golden.errors import InputError
 from golden.formats import Formats
+from hw.host import LATENCY
 from hw.parameters import Parameters
 from hw.registers import MAGIC, Control, Map, Region
+from sim.cycles import Wavefront
 from sim.image import load
 from sim.machines import BUILD
 from sim.native import NativeMachine
@@ -116,6 +118,32 @@ def test_after_a_reset_at_any_cycle_the_machine_says_so_and_is_loaded_again(rng,
         circuit_.write(kept)
         machine.step(1)
         assert all(np.array_equal(getattr(machine, name), getattr(expected, name)) for name in STATE)
+
+
+def test_a_run_that_is_stopped_ends_with_a_step_and_goes_on_with_the_same_bits(rng, simulated):
+    """At any cycle of it, the same object all the while: no state is written back between the runs."""
+    loaded = load(scene("2-D", rng, 30))
+    model, machine, map_ = NativeMachine(loaded.image), simulated(loaded.image, circuit(2)), Map(circuit(2))
+    ends, circuit_ = Wavefront(loaded.image, circuit(2)).run(20), machine.circuit
+    run, stop, done, cycles = (map_.address(Region.CONTROL, 0, getattr(Control, name))
+                               for name in ("RUN", "STOP", "STEPS_DONE", "CYCLES"))
+    seen = set()
+    for under_way in [0, 1, 2, 3, *rng.integers(0, ends[4], 200).tolist()]:
+        circuit_.write([(run, 1000)])
+        circuit_.run(under_way)
+        circuit_.write([(stop, 1)])
+        circuit_.wait()
+        steps, took = circuit_.read([done, cycles]).tolist()
+        assert took == ends[steps - 1]
+        assert took >= under_way and (steps < 3 or ends[steps - 3] <= under_way + LATENCY)
+        model.step(steps)
+        machine.fetch()
+        assert all(np.array_equal(getattr(machine, name), getattr(model, name)) for name in STATE)
+        seen.add(steps)
+    assert len(seen) >= 4
+    circuit_.write([(stop, 1)])  # nothing to stop: the next run is a whole one
+    machine.step(3)
+    assert circuit_.read([done]).tolist() == [3]
 
 
 def test_what_the_circuit_refuses_is_an_error_here(rng, simulated):
