@@ -1,7 +1,7 @@
 """The datapath of a node: Newton's law and one Runge-Kutta stage, over any number type (`golden.qarray`)."""
 
 from .block import normalise
-from .rk4 import rk4, sixth, weigh
+from .rk4 import rk4, rk4_early, weigh
 
 
 def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
@@ -36,17 +36,18 @@ def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
     slope_shift = shift + (factor_shift + inverse_mass.shift)
     products = [(factor * c).scale(span + 1 - fmt.accumulator.int_bits) for c in mantissa]
     acceleration = [c.to(fmt.velocity, right=slope_shift) for c in products]
-    whole = [c.to(fmt.displacement, right=velocity_shift) for c in state.v]
-    displacement = [stage.last.select(sixth(c), c) for c in whole]
+    displacement = [c.to(fmt.displacement, right=velocity_shift) for c in state.v]
 
-    x, x_base_next, x_total = advance(stage, state.x_base, state.x_total, displacement, fmt.position, fmt.displacement)
-    v, v_base_next, v_total = advance(stage, state.v_base, state.v_total, acceleration, fmt.velocity, fmt.velocity)
+    x, x_base_next, x_total = advance(
+        stage, rk4_early, state.x_base, state.x_total, displacement, fmt.position, fmt.displacement
+    )
+    v, v_base_next, v_total = advance(stage, rk4, state.v_base, state.v_total, acceleration, fmt.velocity, fmt.velocity)
     return locals()
 
 
-def advance(stage, base, total, slope, value_format, total_format):
-    """`golden.rk4.rk4` for a vector: (value, base, total) of the next stage."""
-    steps = [rk4(stage, *component) for component in zip(base, total, slope, strict=True)]
+def advance(stage, rule, base, total, slope, value_format, total_format):
+    """One of `golden.rk4`'s rules for a vector: (value, base, total) of the next stage."""
+    steps = [rule(stage, *component) for component in zip(base, total, slope, strict=True)]
     totals = [total.to(total_format) for total, _ in steps]
     values = [value.to(value_format) for _, value in steps]
     bases = [stage.last.select(value, start) for value, start in zip(values, base, strict=True)]
