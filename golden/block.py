@@ -28,7 +28,12 @@ def magnitude(x, operand: int):
     size, below = abs(x), x.fmt.width - 1 - operand
     shift = x.lead([x], below)
     shifted = size.scale(1 - x.fmt.int_bits).to(unsigned(1, x.fmt.width - 1), left=shift)
-    return size, shifted.field(below, unsigned(1, operand)).to(unsigned(0, operand)), shift
+    return size, cut(shifted, unsigned(1, operand)).to(unsigned(0, operand)), shift
+
+
+def cut(x, fmt):
+    """``x``, not negative and in the range of ``fmt``, without what is below its last place: no carry is awaited."""
+    return x.field(x.fmt.frac_bits - fmt.frac_bits, fmt)
 
 
 def difference(a, b):

@@ -3,7 +3,7 @@
 A block-normalised quantity ``q`` is a mantissa and a shift: its value is ``q * 2**-q_shift``.
 """
 
-from .block import clamp, difference, dot, magnitude, normalise, with_sign
+from .block import clamp, cut, difference, dot, magnitude, normalise, with_sign
 from .qformat import Q
 from .rk4 import rk4, weigh
 
@@ -56,11 +56,11 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
     branch = damper(fmt, tables, material, size, g, g_shift)
     rho, rho_shift, sigma, sigma_shift = (branch[n] for n in ("rho", "rho_shift", "sigma", "sigma_shift"))
 
-    # f = -rho g along u
-    f = (rho * g).to(fmt.mantissa)
-    f_shift = g_shift + rho_shift + material.force_shift
+    # f = -rho g along u: g u first, which is ready before rho is
     along = [with_sign(negative, c).to(fmt.direction) for c in u]
-    pull = [(f * c).to(fmt.force, right=f_shift) for c in along]
+    trials = [(g * c).to(fmt.direction) for c in along]
+    f_shift = g_shift + rho_shift + material.force_shift
+    pull = [(rho * c).to(fmt.force, right=f_shift) for c in trials]
 
     # adot = ((1 - a) ldot - sigma g) / l
     s = (sigma * g).to(fmt.mantissa)
@@ -107,7 +107,7 @@ def interpolate_inverse(fmt, tables, square):
     """1 / sqrt(square) for 1 <= square < 4."""
     index = square.field(fmt.inverse_fraction.width, fmt.inverse_index)
     word = tables.inverse(index)
-    return (word.value - word.slope * square.field(0, fmt.inverse_fraction)).to(fmt.inverse)
+    return cut(word.value - word.slope * square.field(0, fmt.inverse_fraction), fmt.inverse)
 
 
 def damper(fmt, tables, material, size, g, g_shift):
@@ -115,13 +115,12 @@ def damper(fmt, tables, material, size, g, g_shift):
     # Where |g| lies among the table's segments: octaves and the fraction of one, which is linear in |g|
     octave_fraction = g.field(0, fmt.octave_fraction)
     octaves = octave_fraction - (g_shift + material.first_octave)
-    place = octaves.scale(fmt.octave.frac_bits).to(fmt.place, right=material.coarseness)
+    place = octaves.to(fmt.place).to(fmt.place, left=material.fineness)
     segment = place.field(fmt.place.frac_bits, fmt.damper_index)
     fraction = place.field(0, fmt.damper_fraction)
     word = tables.damper(material.table, segment)
-    silent = fmt.mantissa.nameless  # outside its branch the table means nothing, inside it never saturates
-    rho_middle = (word.rho_value - word.rho_slope * fraction).to(silent)
-    sigma_middle = (word.sigma_value + word.sigma_slope * fraction).to(silent)
+    rho_middle = cut(word.rho_value - word.rho_slope * fraction, fmt.mantissa)
+    sigma_middle = cut(word.sigma_value + word.sigma_slope * fraction, fmt.mantissa)
 
     below, between = size < material.g1, size < material.g2
 

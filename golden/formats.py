@@ -159,8 +159,8 @@ class Formats:
     @cached_property
     def place(self):
         """Where |g| lies in a material's table: segment and fraction of one. Outside the table it means nothing,
-        so it has no name and its saturation is no fault."""
-        return unsigned(self.damper_index.width, self.damper_fraction.width)
+        but nothing is lost."""
+        return Q(self.octave.int_bits + 2 + self.fineness.raw_max, self.damper_fraction.width)
 
     octave = Q(6, 9, name="octave", unit="octave")
     """A place on the logarithmic axis of |g|: octaves above the full scale, and the finest segments of one."""
@@ -170,8 +170,8 @@ class Formats:
         """A mantissa's bits behind its first, which is 1."""
         return unsigned(0, self.mantissa.width - 1)
 
-    coarseness = unsigned(3, 0, name="coarseness", unit="log2")
-    """Segments of a table are this many octaves of two longer than the finest."""
+    fineness = unsigned(4, 0, name="fineness", unit="log2")
+    """Segments of a table to an octave."""
 
     @cached_property
     def trial_octaves(self):

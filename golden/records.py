@@ -28,7 +28,7 @@ def material(fmt: Formats, tables: int) -> dict[str, Q]:
         "force_shift": e,
         "creep_shift": e,
         "first_octave": fmt.octave,
-        "coarseness": fmt.coarseness,
+        "fineness": fmt.fineness,
         "table": unsigned(max(1, (tables - 1).bit_length()), 0),
     }
 

@@ -31,16 +31,20 @@ def inverse_table(fmt: Formats) -> dict[str, np.ndarray]:
     q = np.maximum(np.arange(entries) * 4.0 / entries, 1.0)
     value, change = _lines(lambda q: q**-0.5, q, q + 4.0 / entries)
     change[: entries // 4] = 0
+    # The result is cut, not rounded; and it is less than 1, as the value is, so the first line starts lower
+    value, end = value + fmt.inverse.lsb / 2, value + fmt.inverse.lsb / 2 + change
+    value = np.minimum(value, 1 - fmt.inverse_value.lsb)
+    change = np.where(change, end - value, 0)
     return {"value": _raw(value, fmt.inverse_value), "slope": _raw(-change, fmt.inverse_slope)}
 
 
 @dataclass(frozen=True)
 class DamperTable:
-    """Segments of one material: where they start on the octave axis, by what power of two
-    they are longer than the finest, and their words."""
+    """Segments of one material: where they start on the octave axis, what power of two of them make an octave, and
+    their words."""
 
     first_octave: int  # raw
-    coarseness: int
+    fineness: int
     words: dict[str, np.ndarray]
 
 
@@ -73,10 +77,10 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
         steepest = np.ldexp(np.abs(change), shift)[:used].max()
         if steepest >= fmt.damper_slope.raw_max * fmt.damper_slope.lsb:
             raise ValueError(f"{name} must change by less than 1/8 of itself in a segment, not {steepest:.2g}")
-        words[f"{name}_value"] = _raw(np.ldexp(value, shift), fmt.damper_value)
+        words[f"{name}_value"] = _raw(np.ldexp(value, shift) + fmt.mantissa.lsb / 2, fmt.damper_value)  # it is cut
         words[f"{name}_slope"] = _raw(np.ldexp(sign * change, shift), fmt.damper_slope)
         words[f"{name}_shift"] = shift.astype(np.int64)
-    return DamperTable(int(start * 2**finest), finest - (per_octave.bit_length() - 1), words)
+    return DamperTable(int(start * 2**finest), per_octave.bit_length() - 1, words)
 
 
 def octave(x):

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
-from golden.graph import Node
+from golden.graph import AXES, Node
 
 from .blocks.memory import READ_LATENCY
+from .blocks.narrow import levels
 from .operations import step_count
 
 
@@ -14,6 +15,9 @@ class Cost:
 
     Those named in ``more``, as `golden.graph` names them but for a vector's axis, have one more: place and route found
     the longest ways behind them.
+
+    A product with an unsigned number of at most ``narrow`` bits is made of lookup tables instead of a multiplier, if
+    ``mul`` registers are enough for it (`hw.blocks.narrow`).
 
     An operation in several steps (`hw.operations`) gets its registers behind its last steps; those that it has more
     than steps follow as a delay. A sum has them behind each addition of three numbers.
@@ -27,6 +31,7 @@ class Cost:
     add: int = 1
     sub: int = 1
     mul: int = 3
+    narrow: int = 8
     abs: int = 1
     less: int = 1
     select: int = 0
@@ -36,13 +41,19 @@ class Cost:
     round: int = 0
     shift_right: int = 2
     read: int = READ_LATENCY
-    more: tuple[str, ...] = ("pull", "acceleration")
+    more: tuple[str, ...] = ("d", "l", "stretch", "rho", "pull", "acceleration")
 
     def of(self, node: Node) -> int:
         """Cycles from a node's operands to its value."""
         registers = getattr(self, node.kind)
-        more = node.name in self.more or node.name.rpartition("_")[0] in self.more
+        vector, _, axis = node.name.rpartition("_")
+        more = (vector if axis in AXES else node.name) in self.more
         return (registers * step_count(node) if node.kind == "sum" else registers) + more
+
+    def narrow_product(self, node: Node) -> bool:
+        """Whether a product is made of lookup tables."""
+        narrow = min((operand.fmt for operand in node.operands), key=lambda q: q.width)
+        return not narrow.signed and narrow.width <= self.narrow and levels(narrow.width) <= self.mul
 
     def __post_init__(self):
         if self.mul < 2:

@@ -7,6 +7,7 @@ from amaranth.hdl import Cat, Const, Module, Signal, Value
 from golden.graph import Node
 
 from .blocks.multiplier import Multiplier
+from .blocks.narrow import NarrowMultiplier
 from .blocks.shifter import ShiftStage
 from .delay import DelayLines
 from .operations import STEPS, field, never, shape, shift_count, step_count
@@ -81,10 +82,7 @@ class Pipe:
         start, done = self._schedule.start[node], self._schedule.cycle[node]
         operands = [self._operand(node, number, start) for number in range(len(node.operands))]
         if node.kind == "mul":
-            multiplier = Multiplier(*(shape(operand.fmt) for operand in node.operands), registers=done - start)
-            self._m.submodules[node.name] = multiplier
-            self._m.d.comb += [multiplier.a.eq(operands[0]), multiplier.b.eq(operands[1])]
-            result = multiplier.product
+            result = self._product(node, operands, done - start)
         elif node.kind == "read":
             result = self._tables[node.detail[0]](*operands)
         else:
@@ -92,6 +90,13 @@ class Pipe:
             if fault:
                 self._report(node.fmt.name, fault[0], done)
         self._results[node] = result
+
+    def _product(self, node, operands, registers):
+        a, b = sorted(operands, key=len, reverse=True)
+        make = NarrowMultiplier if self._schedule.cost.narrow_product(node) else Multiplier
+        self._m.submodules[node.name] = multiplier = make(a.shape(), b.shape(), registers=registers)
+        self._m.d.comb += [multiplier.a.eq(a), multiplier.b.eq(b)]
+        return multiplier.product
 
     def _operand(self, node, number, start):
         """In the operation's first cycle. A count is made ready for its shift, with a register behind it where it is

@@ -87,7 +87,7 @@ def coefficients(
         "g1": round(g1 / formats.threshold.lsb), "g2": round(g2 / formats.threshold.lsb),
         "force_shift": round(log2(units.force / full)) - 1, "creep_shift": creep_shift,
         "first_octave": words.first_octave if words else 0,
-        "coarseness": words.coarseness if words else 0,
+        "fineness": words.fineness if words else 0,
         "table": table if words else 0,
     }
     for end, (rho, sigma) in ends.items():

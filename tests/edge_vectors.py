@@ -127,7 +127,7 @@ def sensible(rng, formats, fmt, n):
     values["material_g1"] = raw(g1, fmt.threshold)
     values["material_g2"] = raw(np.minimum(g1 * 2.0 ** rng.uniform(0, 4, n), 1.9), fmt.threshold)
     values["material_first_octave"] = raw(octave(np.maximum(g1, 2.0**-fmt.trial_octaves)), fmt.octave)
-    values["material_coarseness"] = rng.integers(0, 4, n)
+    values["material_fineness"] = rng.integers(6, 10, n)
     values["material_table"] = np.zeros(n, np.int64)
     return values
 
@@ -178,7 +178,7 @@ def beside(rng, values):
 
 def on_boundaries(rng, inputs, model, fmt, rows):
     """|g| exactly at a threshold and |g| exactly at the edge of a segment, or one step of either beside it."""
-    model, coarseness = model(rows), inputs["material_coarseness"][rows]
+    model, fineness = model(rows), inputs["material_fineness"][rows]
     first, second, place = np.split(np.arange(len(rows)), [len(rows) // 3, 2 * len(rows) // 3])
 
     at = np.clip(beside(rng, model["size"]), fmt.threshold.raw_min, fmt.threshold.raw_max)
@@ -188,7 +188,7 @@ def on_boundaries(rng, inputs, model, fmt, rows):
 
     finest = fmt.octave.frac_bits
     octaves = (model["octave_fraction"] >> fmt.octave_fraction.width - finest) - (model["g_shift"] << finest)
-    segment = rng.choice([0, 1, 2, 255, 256, 511, 512], len(rows)) << coarseness
+    segment = rng.choice([0, 1, 2, 255, 256, 511, 512], len(rows)) << finest - fineness
     start = np.clip(beside(rng, octaves - segment), fmt.octave.raw_min, fmt.octave.raw_max)
     inputs["material_first_octave"][rows[place]] = start[place]
     inputs["material_g1"][rows[place]] = 0  # so that the table is what is taken
