@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from amaranth.hdl import Cat, Module, Mux, Signal
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -17,17 +17,20 @@ from .edge import EdgeDatapath
 from .fetch import Fetch
 from .fields import stage_bits, unpack
 from .front import Front
-from .host import CHOICE, HANDOVER, MEMORY, HostPort, host_signature
+from .host import CHOICE, HANDOVER, MEMORY, HostPort, handed, host_signature
 from .lane import COPIED, NEXT, NODE_WORDS, Lane, latency, written
 from .parameters import Parameters
 from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from .sequencer import Sequencer
 from .updater import NodeUpdater
 
+LISTED = 1 + READ_LATENCY
+"""Cycles from a list's address to its entry: a register behind the choice between the host and the `hw.fetch`."""
+
 
 def row_latency(parameters: Parameters) -> int:
     """Cycles from a row's address to its edges and the highest of their nodes."""
-    return READ_LATENCY + highest.latency(2 * parameters.lanes)
+    return LISTED + highest.latency(2 * parameters.lanes)
 
 
 class Core(wiring.Component):
@@ -78,8 +81,9 @@ class Core(wiring.Component):
 
         self._index, self._data = Signal.like(self._host.index), Signal.like(self._host.data)
         m.d.sync += [self._index.eq(self._host.index), self._data.eq(self._host.data)]
-        self._idle = Signal()
-        m.d.comb += [self._idle.eq(~self._sequencer.busy), self.busy.eq(self._sequencer.busy)]
+        self._idle = Signal(init=1)
+        m.d.sync += self._idle.eq(~self._sequencer.busy)
+        m.d.comb += self.busy.eq(self._sequencer.busy)
         self._loading = Signal()
         idle = [self._lines.later(self._idle, cycles, name="idle", reset=True) for cycles in range(HANDOVER + 1)]
         m.d.comb += self._loading.eq(Cat(idle).any())
@@ -103,18 +107,21 @@ class Core(wiring.Component):
         """A list's memory: read by its `Fetch`, or by the host while nothing runs."""
         ram = BlockRam(width=records.width(record), depth=depth)
         self._m.submodules[name] = ram
-        read_address = self._lines.later(host_address, HANDOVER, name=f"{name}_index")
-        self._m.d.comb += [
-            ram.address.eq(Mux(self._loading, read_address, fetch_address)),
-            ram.write_address.eq(host_address),
-            ram.write_data.eq(self._data),
-        ]
+        by_host = {"address": self._lines.later(host_address, HANDOVER - 1, name=f"{name}_index")}
+        handed(self._m, ram, self._loading, by_host, {"address": fetch_address})
+        self._m.d.comb += [ram.write_address.eq(host_address), ram.write_data.eq(self._data)]
         return ram
 
     def _front(self, name, fetch):
         """The list's entry in front, and the one behind it: ``word``, ``last``, ``index`` of each."""
         m, sequencer, behind = self._m, self._sequencer, Cat(fetch.word, fetch.last, fetch.index)
         m.submodules[f"{name}_front"] = front = Front(width=len(behind))
+        for lane in self._lanes:
+            m.d.comb += [
+                getattr(lane, f"{name}_behind_valid").eq(fetch.valid),
+                getattr(lane, f"{name}_behind_ready").eq(getattr(sequencer, f"{name}_behind_ready")),
+                getattr(lane, f"{name}_ready").eq(getattr(sequencer, f"{name}_ready")),
+            ]
         m.d.comb += [
             fetch.flush.eq(self._loading),
             front.flush.eq(self._loading),
@@ -150,7 +157,7 @@ class Core(wiring.Component):
             words.append(ram.data)
         self._edge_entries = words
         edges = [unpack(record, word) for word in words]
-        behind_memory = row_latency(p) - READ_LATENCY
+        behind_memory = row_latency(p) - LISTED
         later = [self._lines.later(word, behind_memory, name=f"edge_entry{n}") for n, word in enumerate(words)]
         m.d.comb += [
             last.valid.eq(Cat(edge["valid"].replicate(2) for edge in edges)),
@@ -160,13 +167,13 @@ class Core(wiring.Component):
         ]
         front, behind = self._front("row", fetch)
 
-        entries = [unpack(record, front.word[n * width : (n + 1) * width]) for n in range(p.lanes)]
-        self._valid = [entry["valid"] for entry in entries]
+        entries = [slice(n * width, (n + 1) * width) for n in range(p.lanes)]
+        self._valid = [unpack(record, front.word[entry])["valid"] for entry in entries]
         for lane, entry in zip(self._lanes, entries, strict=True):
             m.d.comb += [
-                lane.valid.eq(sequencer.row_goes & entry["valid"]),
-                lane.row.eq(front.index),
-                *(getattr(lane, name).eq(entry[name]) for name in ("i", "j", "i_first", "j_first", "material")),
+                lane.flush.eq(self._loading),
+                lane.row_behind.eq(behind.index),
+                lane.edge_behind.eq(behind.word[entry]),
                 *(bit.eq(value) for bit, value in stage_bits(lane, sequencer.row_stage)),
                 lane.velocity_shift.eq(host.velocity_shift),
             ]
@@ -181,7 +188,9 @@ class Core(wiring.Component):
         m, p, host, sequencer = self._m, self.parameters, self._host, self._sequencer
         record = records.node_entry()
         width = records.width(record)
-        m.submodules.node_fetch = fetch = Fetch(index_bits=p.node_row_bits, width=width * p.updates)
+        m.submodules.node_fetch = fetch = Fetch(
+            index_bits=p.node_row_bits, width=width * p.updates, data_latency=LISTED
+        )
         row, column = p.node_place(self._index)
         self._node_entries = []
         for number in range(p.updates):
@@ -210,7 +219,7 @@ class Core(wiring.Component):
             sequencer.node_behind_need.eq(unpack(record, behind.word)["need"]),
         ]
         for lane in self._lanes:
-            m.d.comb += lane.update_row.eq(self.updater.update_row)
+            m.d.comb += [lane.node_behind.eq(behind.index), lane.update_row.eq(self.updater.update_row)]
             for number, updater in enumerate(self.updaters):
                 m.d.comb += getattr(lane, f"update{number}").eq(updater.update)
                 for word in NODE_WORDS:
@@ -219,7 +228,6 @@ class Core(wiring.Component):
     def _sums(self):
         """First ends of all lanes, then second ends, as in the node entry's mask."""
         for number, lane in enumerate(self._lanes):
-            self._m.d.comb += lane.sum_row.eq(self.updater.row)
             for half, end in enumerate("ij"):
                 bank = half * self.parameters.lanes + number
                 for n, updater in enumerate(self.updaters):
@@ -303,6 +311,7 @@ class Core(wiring.Component):
             **{name: getattr(sequencer, name) for name in ("node_waits", "list_waits", "end_waits")},
         }
         for name in COUNTERS.values():
-            counter = Signal(len(host.cycles), name=name)
+            counter, event = Signal(len(host.cycles), name=name), Value.cast(events[name])
+            counted = Signal.like(event, name=f"{name}_counted")  # a cycle later
             m.d.comb += getattr(host, name).eq(counter)
-            m.d.sync += counter.eq(Mux(host.start, 0, counter + events[name]))
+            m.d.sync += [counted.eq(event), counter.eq(Mux(host.start, 0, counter + counted))]

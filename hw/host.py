@@ -25,7 +25,7 @@ from .registers import (
 CHOICE = 2
 """Cycles for choosing a word, then a lane, then a region."""
 
-HANDOVER = 2
+HANDOVER = 3
 """Registers on the host's way to the memories of lanes and updaters, which are far: a run starts so much later."""
 
 MEMORY = 1 + HANDOVER + READ_LATENCY
@@ -39,6 +39,12 @@ ANYTIME = Control.FAULTS, Control.REFUSED, Control.STOP
 """Control registers that may be written while the machine is busy."""
 
 WRITABLE = [register for register in Control if register not in READ_ONLY]
+
+
+def handed(m, ram, host, by_host: dict, own: dict):
+    """The ports of a memory from registers: what the host wants while nothing runs, and the machine's own."""
+    for port, value in own.items():
+        m.d.sync += getattr(ram, port).eq(Mux(host, by_host[port], value))
 
 
 def host_signature(state: int) -> dict:

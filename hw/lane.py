@@ -1,6 +1,6 @@
 """A lane: an edge processor, the memories of its edges, its copy of the nodes and its sums of forces."""
 
-from amaranth.hdl import Array, Const, Module, Mux, Signal
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -12,7 +12,9 @@ from .blocks.memory import READ_LATENCY, BlockRam, LutRam
 from .choice import choose
 from .delay import DelayLines
 from .edge import EdgeDatapath, EdgeProcessor
-from .host import CHOICE, HANDOVER, MEMORY
+from .fields import unpack
+from .front import Front
+from .host import CHOICE, HANDOVER, MEMORY, handed
 from .operations import shape
 from .parameters import Parameters
 
@@ -42,17 +44,16 @@ def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
     materials = records.material(fmt, p.tables)
     node_formats = {"x": fmt.position, "v": fmt.velocity}
     return {
-        "valid": In(1),
-        "row": In(p.row_bits),
-        **{name: In(p.node_bits) for name in ("i", "j")},
-        **{name: In(1) for name in ("i_first", "j_first")},
-        "material": In(p.material_bits),
+        "flush": In(1),
+        "row_behind": In(p.row_bits),
+        "edge_behind": In(records.width(records.edge_entry())),
+        "node_behind": In(p.node_row_bits),
+        **{f"{name}_{port}": In(1) for name in ("row", "node") for port in ("behind_valid", "behind_ready", "ready")},
         **{f"stage_{bit}": In(1) for bit in ("first", "last", "half", "double")},
         "velocity_shift": In(shape(fmt.exponent)),
         "update_row": In(p.node_row_bits),
         **{f"update{n}": In(1) for n in range(p.updates)},
         **{f"update{n}_{word}": In(shape(node_formats[word[0]])) for n in range(p.updates) for word in NODE_WORDS},
-        "sum_row": In(p.node_row_bits),
         **{f"sum{n}_{end}_{axis}": Out(shape(fmt.accumulator)) for n, end, axis in ends},
         "fault": Out(len(datapath.faults)),
         "host": In(1),
@@ -76,19 +77,28 @@ class Lane(wiring.Component):
 
     Latency: the sums of an edge may be read `latency` cycles after it was issued. Throughput one edge per cycle.
 
+    The edge in front and the row of nodes in front stand in the lane itself (`hw.front`), near the memories that they
+    are the addresses of; in every lane they move in the same cycles.
+
     Members
     -------
-    valid, row, i, j, i_first, j_first, material : In
-        The edge that is issued: its place in the lane's memories, its nodes, whether it is the first on them in this
-        lane, its material.
+    flush : In(1)
+        Nothing stands in front.
+    row_behind, edge_behind : In
+        The edge behind the one in front: its place in the lane's memories, its list's entry.
+    node_behind : In
+        The row of nodes behind the one in front: the sums of the one in front are read.
+    row_behind_valid, row_behind_ready, row_ready, node_behind_valid, node_behind_ready, node_ready : In(1)
+        As of `hw.front.Front`.
     stage_first, stage_last, stage_half, stage_double : In(1)
-        The Runge-Kutta stage it is issued in.
+        The Runge-Kutta stage of the edge in front.
     velocity_shift : In
         Static.
     update_row, update<n>, update<n>_x_*, update<n>_v_* : In
         The new states of the nodes of a row, if ``update<n>``; in the lane's memories `COPIED` cycles later.
-    sum_row : In, sum<n>_i_*, sum<n>_j_* : Out
-        The forces summed on a row's nodes as first and as second ends of edges, `READ_LATENCY` cycles later.
+    sum<n>_i_*, sum<n>_j_* : Out
+        The forces summed on the nodes of a row as first and as second ends of edges, `READ_LATENCY` cycles after it
+        came to the front.
     fault : Out
         One bit for each name in ``datapath.faults``.
     host_* : In / Out
@@ -107,28 +117,46 @@ class Lane(wiring.Component):
         m.submodules.edge_processor = self._edge = edge = EdgeProcessor(self.datapath)
         self._m, self._ready, self._arrival = m, self.datapath.ready, self.datapath.schedule.arrival
         self._lines = DelayLines(m)
+        self._fronts()
         self._nodes()
         self._edges()
         self._material()
         self._sums()
-        m.d.comb += [edge.valid.eq(self._later("valid", 0)), edge.velocity_shift.eq(self.velocity_shift)]
+        m.d.comb += edge.valid.eq(self._later("valid", 0))
+        m.d.sync += edge.velocity_shift.eq(self.velocity_shift)
         for bit in ("first", "last", "half", "double"):
             name = f"stage_{bit}"
-            m.d.comb += getattr(edge, name).eq(self._later(name, self._arrival[name]))
-        m.d.comb += [
-            edge.table_write.eq(self._host("write_table")),
-            edge.table_address.eq(self._host("index")),
-            edge.table_data.eq(self._host("data")),
-            edge.table_read.eq(self._host("")),
-            self.host_table.eq(edge.table_word),
-            self.fault.eq(edge.fault),
-        ]
+            near = Signal(name=f"{name}_near", reset_less=True)
+            m.d.sync += near.eq(getattr(self, name))
+            later = self._lines.later(near, READ_LATENCY + self._arrival[name] - 1, name=name)
+            m.d.comb += getattr(edge, name).eq(later)
+        for name in ("write", "address", "data", "read"):
+            by_host = {"write": "write_table", "address": "index", "read": ""}.get(name, name)
+            m.d.sync += getattr(edge, f"table_{name}").eq(self._host(by_host, HANDOVER - 1))
+        m.d.comb += self.host_table.eq(edge.table_word)
+        m.d.sync += self.fault.eq(edge.fault)
         self._lines.build()
         return m
 
+    def _fronts(self):
+        """``_issued``: what is taken from the edge in front, by name."""
+        fronts = {}
+        for name, behind in (("row", Cat(self.edge_behind, self.row_behind)), ("node", self.node_behind)):
+            self._m.submodules[f"{name}_front"] = fronts[name] = front = Front(width=len(behind))
+            self._m.d.comb += [front.flush.eq(self.flush), front.behind.eq(behind)]
+            for port in ("behind_valid", "behind_ready", "ready"):
+                self._m.d.comb += getattr(front, port).eq(getattr(self, f"{name}_{port}"))
+        entry, width = fronts["row"].entry, len(self.edge_behind)
+        self._issued = unpack(records.edge_entry(), entry[:width])
+        self._issued["valid"] = self._issued["valid"] & fronts["row"].goes
+        for name, bits in (("i", self.parameters.node_bits), ("j", self.parameters.node_bits),
+                           ("material", self.parameters.material_bits)):
+            self._issued[name] = self._issued[name][:bits]
+        self._issued |= {"row": entry[width:], "sum_row": fronts["node"].entry}
+
     def _later(self, name: str, cycle: int):
         """What was issued, when its edge is in ``cycle`` of the edge processor; its nodes are read before cycle 0."""
-        return self._lines.later(getattr(self, name), READ_LATENCY + cycle, name=name, reset=name == "valid")
+        return self._lines.later(self._issued[name], READ_LATENCY + cycle, name=name, reset=name == "valid")
 
     def _host(self, name: str, cycles: int = HANDOVER):
         """What comes from the host, which is far: later by as many registers, of which the last may be one behind a
@@ -141,7 +169,7 @@ class Lane(wiring.Component):
         p = self.parameters
         written, words = self._copied()
         for end in "ij":
-            row, column = p.node_place(getattr(self, end))
+            row, column = p.node_place(self._issued[end])
             column = self._lines.later(column, READ_LATENCY, name=f"{end}_column")
             for number, word in enumerate(NODE_WORDS):
                 target, found = getattr(self._edge, f"{end}_{word}"), []
@@ -183,27 +211,20 @@ class Lane(wiring.Component):
         for word in EDGE_WORDS:
             ram = BlockRam(width=self._state[word].width, depth=self.parameters.rows)
             self._m.submodules[f"edge_{word}"] = ram
-            read = self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY - 1)
-            self._chosen(ram, "address", host, index, read)
             self._m.d.comb += getattr(self._edge, f"edge_{word}").eq(ram.data)
-            writes = {"write": Const(0, 1), "write_address": index, "write_data": Const(0, 1)}
+            own = {"write": Const(0, 1), "write_address": index, "write_data": Const(0, 1)}
             if word in NEXT:
                 ready = self._ready(NEXT[word])
-                writes = {
+                own = {
                     "write": self._later("valid", ready),
                     "write_address": self._later("row", ready),
                     "write_data": getattr(self._edge, NEXT[word]),
                 }
-            host_write = host_writes.get(word, Const(0, 1))
-            for port, by_host in (("write", host_write), ("write_address", index), ("write_data", data)):
-                self._chosen(ram, port, host, by_host, writes[port])
+            own["address"] = self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY - 1)
+            by_host = {"write": host_writes.get(word, Const(0, 1)), "write_data": data}
+            handed(self._m, ram, host, by_host | {"write_address": index, "address": index}, own)
             if word in ("length", "ratio"):
                 self._m.d.comb += getattr(self, f"host_{word}").eq(ram.data)
-
-    def _chosen(self, ram, port: str, host, by_host, value):
-        """To a memory, the host's or the lane's own, from a register."""
-        target = getattr(ram, port)
-        self._m.d.sync += target.eq(Mux(host, by_host, value))
 
     def _material(self):
         """A small memory for each coefficient, read in the cycle before it is needed."""
@@ -236,7 +257,7 @@ class Lane(wiring.Component):
                 sums.valid.eq(self._later("valid", announce)),
                 sums.node.eq(self._later(end, announce)),
                 sums.first.eq(self._later(f"{end}_first", announce)),
-                sums.sum_row.eq(self.sum_row),
+                sums.sum_row.eq(self._issued["sum_row"]),
             ]
             for axis in AXES:
                 self._m.d.comb += getattr(sums, f"pull_{axis}").eq(getattr(self._edge, f"pull_{axis}"))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from . import fetch
 from .blocks.memory import READ_LATENCY
-from .core import Core, row_latency
+from .core import LISTED, Core, row_latency
 from .edge import EdgeDatapath
 from .front import LATENCY as FRONT_LATENCY
 from .host import HANDOVER
@@ -28,7 +28,7 @@ class Latencies:
     @classmethod
     def of(cls, p: Parameters) -> "Latencies":
         edge, node = EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
-        rows, nodes = (HANDOVER + fetch.latency(data) + FRONT_LATENCY for data in (row_latency(p), READ_LATENCY))
+        rows, nodes = (HANDOVER + fetch.latency(data) + FRONT_LATENCY + 1 for data in (row_latency(p), LISTED))
         return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + COPIED + 1 + FRONT_LATENCY, rows, nodes)
 
 

@@ -92,8 +92,8 @@ class Pipe:
         self._results[node] = result
 
     def _product(self, node, operands, registers):
-        a, b = sorted(operands, key=len, reverse=True)
-        make = NarrowMultiplier if self._schedule.cost.narrow_product(node) else Multiplier
+        narrow = self._schedule.cost.narrow_product(node)
+        make, (a, b) = (NarrowMultiplier, sorted(operands, key=len)[::-1]) if narrow else (Multiplier, operands)
         self._m.submodules[node.name] = multiplier = make(a.shape(), b.shape(), registers=registers)
         self._m.d.comb += [multiplier.a.eq(a), multiplier.b.eq(b)]
         return multiplier.product

@@ -7,6 +7,8 @@ from itertools import count
 
 NAME = r"[A-Za-z_]\w*"
 REGISTER = re.compile(r"^  always @\(posedge clk\)\n    (\S+) +<= \\(\$\d+) ;$", re.MULTILINE)
+CONNECTION = re.compile(rf"^(    \.{NAME})\(({NAME})\)", re.MULTILINE)
+WIRE = re.compile(rf"^  wire (?:\[.*\] )?({NAME});\n", re.MULTILINE)
 ALIAS = re.compile(rf"^  (?:wire (?:\[.*\] )?|assign )({NAME})(?:;| = .*)\n", re.MULTILINE)
 HEADER = re.compile(rf"^module ({NAME}) ?\(([^;]*)\);")
 REPEATED = re.compile(rf"(?<=[{{,] )({NAME}(?:\[\d+\])?)((?:, \1)+)(?=[, ])")
@@ -19,7 +21,7 @@ def readable(verilog: str) -> str:
 
 
 def _module(text: str) -> str:
-    text = HEADER.sub(_clock_first, _without_aliases(_renamed(text)))
+    text = HEADER.sub(_clock_first, _left_open(_without_aliases(_renamed(text))))
     text = REPEATED.sub(lambda bits: f"{{{bits[2].count(',') + 1}{{{bits[1]}}}}}", text)  # a sign that is extended
     text = re.sub(rf"= ! ({NAME})", r"= ~| \1", text)  # of several bits
     # In SystemVerilog what a declaration sets is there before any process looks: no event
@@ -59,6 +61,14 @@ def _without_aliases(text: str) -> str:
         if not idle:
             return text
         text = ALIAS.sub(lambda line, idle=idle: "" if line[1] in idle else line[0], text)
+
+
+def _left_open(text: str) -> str:
+    """An instance's output that goes nowhere is connected to nothing."""
+    uses = Counter(re.findall(rf"(?<![.\w]){NAME}", text))
+    idle = {name for _, name in CONNECTION.findall(text) if uses[name] == 2}  # declaration and connection
+    text = WIRE.sub(lambda wire: "" if wire[1] in idle else wire[0], text)
+    return CONNECTION.sub(lambda port: f"{port[1]}()" if port[2] in idle else port[0], text)
 
 
 def _clock_first(header: re.Match) -> str:

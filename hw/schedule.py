@@ -33,8 +33,6 @@ class Schedule:
         Inputs that do not change while the pipeline works.
     prompt : set of str
         Outputs that are waited for, if not all of them: the last of these comes as early as it can.
-    ahead : int
-        Cycles before the item that late inputs may come.
     patience : int
         Cycles that the other outputs may come after them, if they gain registers by it.
 
@@ -49,8 +47,7 @@ class Schedule:
         If a late input is needed before it may come.
     """
 
-    def __init__(self, graph: Graph, cost: Cost, *, late=frozenset(), static=frozenset(), prompt=None, patience=0,
-                 ahead=0):
+    def __init__(self, graph: Graph, cost: Cost, *, late=frozenset(), static=frozenset(), prompt=None, patience=0):
         self.graph, self.cost, self._late, self._static = graph, cost, late, static
         self._more: set[Node] = set()
         self._place()
@@ -58,11 +55,10 @@ class Schedule:
         self.latency = max(cycle for cycle in self.cycle.values() if cycle is not None)
         untimed = {"const", "input", *WIRES}
         self._idle = [node for node in graph.nodes if self.cycle[node] is None and node.kind not in untimed]
-        self._spread_idle(ahead)
+        self._spread_idle()
         for name, cycle in self.arrival.items():
-            if cycle < -ahead:
-                when = f"at most {ahead} cycles before its item has come" if ahead else "after its item has come"
-                raise ValueError(f"{name} must be needed {when}, not {-cycle} cycles before")
+            if cycle < 0:
+                raise ValueError(f"{name} must be needed after its item has come, not {-cycle} cycles before")
 
     def known(self, node: Node, cycle: int) -> bool:
         """Whether a node has its value in a cycle, or has had it before."""
@@ -131,15 +127,15 @@ class Schedule:
                 latest[operand] = min(latest[operand], latest[user] - cycles)
         return latest
 
-    def _spread_idle(self, ahead: int):
-        """Operations on nothing but late inputs have time for registers, as far as these may come earlier."""
-        self._more |= {node for node in self._idle if rounds(node)}
-        for node in self._idle:
-            if node.kind == "select":
-                self._more.add(node)
-                self._place_idle()
-                if min(self.arrival.values()) < -ahead:
-                    self._more.remove(node)
+    def _spread_idle(self):
+        """Operations on nothing but late inputs have time for registers, as long as none is needed too early."""
+        candidates = [node for node in self._idle if rounds(node)] + [n for n in self._idle if n.kind == "select"]
+        self._place_idle()
+        for node in candidates:
+            self._more.add(node)
+            self._place_idle()
+            if min(self.arrival.values()) < 0:
+                self._more.remove(node)
         self._place_idle()
 
     def _place_idle(self):

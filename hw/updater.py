@@ -2,7 +2,7 @@
 
 from functools import cached_property
 
-from amaranth.hdl import Cat, Module, Mux, Signal
+from amaranth.hdl import Cat, Const, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -15,7 +15,7 @@ from .blocks.memory import READ_LATENCY, BlockRam
 from .cost import Cost
 from .delay import DelayLines
 from .edge import fault_names
-from .host import HANDOVER
+from .host import HANDOVER, handed
 from .lane import NODE_WORDS
 from .operations import shape
 from .parameters import Parameters
@@ -25,6 +25,9 @@ from .schedule import Schedule
 RESULTS = {"x_base": "x", "v_base": "v", "v": "v", "x_total": "x_total", "v_total": "v_total"}
 """Where a node's memories get their next words from; a base is written in a step's last stage."""
 
+
+NEVER = Const(0, 1), Const(0, 1)
+"""Nothing is written."""
 
 GATHERED = READ_LATENCY + 1
 """Cycles from the issue of a node to its sums of forces in registers: they come from all lanes."""
@@ -48,8 +51,7 @@ class NodeDatapath:
     @cached_property
     def schedule(self):
         late = {name for name in self.graph.inputs if not name.startswith(("pull", "velocity_shift"))}
-        ahead = GATHERED - READ_LATENCY
-        return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"}, ahead=ahead)
+        return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"})
 
     @cached_property
     def faults(self) -> list[str]:
@@ -130,13 +132,15 @@ class NodeUpdater(wiring.Component):
         for bit in ("first", "last", "half", "double"):
             name = f"stage_{bit}"
             inputs[name] = self._later(getattr(self, name), self.schedule.arrival[name])
-        mask = self._lines.later(self.mask, READ_LATENCY)
+        others = Signal.like(self.mask, name="others")
+        m.d.comb += others.eq(~self.mask)
+        others = self._lines.later(others, READ_LATENCY)
         for bank in range(self.banks):
             for axis in AXES:
                 total = getattr(self, f"sum{bank}_{axis}")
                 name = f"pull{bank}_{axis}"
                 inputs[name] = pull = Signal(total.shape(), name=name, reset_less=True)
-                m.d.sync += pull.eq(Mux(mask[bank], total, 0))
+                m.d.sync += pull.eq(Mux(others[bank], 0, total))
         memories = self._memories(inputs)
         pipe = Pipe(m, self.schedule, inputs, self._later(self.valid, 0))
         self._write_back(pipe, memories)
@@ -150,25 +154,23 @@ class NodeUpdater(wiring.Component):
         return self._lines.later(value, GATHERED + cycle, reset=value is self.valid)
 
     def _host(self, name: str):
-        """What comes from the host, which is far: later by as many registers."""
+        """What comes from the host, which is far, in the cycle before it reaches the memories."""
         name = f"host_{name}".rstrip("_")
-        return self._lines.later(getattr(self, name), HANDOVER, name=name, reset=True)
+        return self._lines.later(getattr(self, name), HANDOVER - 1, name=name, reset=True)
 
     def _memory(self, name: str, width: int, arrival: int) -> BlockRam:
         """A word per node, read for ``arrival``, or for the host."""
         ram = BlockRam(width=width, depth=self.parameters.node_rows)
         self._m.submodules[name] = ram
-        address = self._later(self.row, arrival - READ_LATENCY)
-        self._m.d.comb += ram.address.eq(Mux(self._host(""), self._host("index"), address))
+        address = self._later(self.row, arrival - READ_LATENCY - 1)
+        handed(self._m, ram, self._host(""), {"address": self._host("index")}, {"address": address})
         return ram
 
-    def _host_writes(self, ram: BlockRam, strobe):
-        with self._m.If(self._host("")):
-            self._m.d.comb += [
-                ram.write.eq(strobe),
-                ram.write_address.eq(self._host("index")),
-                ram.write_data.eq(self._host("data")),
-            ]
+    def _written(self, ram: BlockRam, *, by_host=NEVER, own=NEVER):
+        """What is written: by whom, a strobe and a word."""
+        by_host = {"write_address": self._host("index"), "write": by_host[0], "write_data": by_host[1]}
+        row = self._later(self.row, self.datapath.done)
+        handed(self._m, ram, self._host(""), by_host, {"write_address": row, "write": own[0], "write_data": own[1]})
 
     def _memories(self, inputs):
         memories, arrival = {}, self.schedule.arrival
@@ -177,23 +179,18 @@ class NodeUpdater(wiring.Component):
                 name = f"{quantity}_{axis}"
                 memories[name] = ram = self._memory(f"node_{name}", q.width, arrival[name])
                 inputs[name] = self._cast(ram.data, q)
-        for axis in AXES:
+        for number, axis in enumerate(AXES):
             q = self.parameters.formats.accumulator
             ram = self._memory(f"load_{axis}", q.width, arrival[f"load_{axis}"])
             inputs[f"load_{axis}"] = self._cast(ram.data, q)
-            self._host_writes(ram, self._host("write_load")[AXES.index(axis)])
+            self._written(ram, by_host=(self._host("write_load")[number], self._host("data")))
             self._m.d.comb += getattr(self, f"host_load_{axis}").eq(ram.data)
         low = 0
         for part, q in self._mass.items():
             name = f"inverse_mass_{part}"
             ram = self._memory(name, q.width, arrival[name])
             inputs[name] = self._cast(ram.data, q)
-            with self._m.If(self._host("")):
-                self._m.d.comb += [
-                    ram.write.eq(self._host("write_mass")),
-                    ram.write_address.eq(self._host("index")),
-                    ram.write_data.eq(self._host("data")[low : low + q.width]),
-                ]
+            self._written(ram, by_host=(self._host("write_mass"), self._host("data")[low : low + q.width]))
             self._m.d.comb += self.host_mass[low : low + q.width].eq(ram.data)
             low += q.width
         return memories
@@ -203,33 +200,22 @@ class NodeUpdater(wiring.Component):
 
     def _write_back(self, pipe, memories):
         m, done = self._m, self.datapath.done
-        valid, row = self._later(self.valid, done), self._later(self.row, done)
-
-        last = self._later(self.stage_last, done)
-
-        def written(ram, name, when=1):
-            m.d.comb += [
-                ram.write.eq(valid & when),
-                ram.write_address.eq(row),
-                ram.write_data.eq(pipe.output(name, done)),
-            ]
-
+        valid, last = self._later(self.valid, done), self._later(self.stage_last, done)
+        strobes = dict(zip(NODE_WORDS, self._host("write_state"), strict=True))
         for quantity, result in RESULTS.items():
             for axis in AXES:
-                when = last if "base" in quantity else 1
-                written(memories[f"{quantity}_{axis}"], f"{result}_{axis}", when)
-        for number, word in enumerate(NODE_WORDS):
-            quantity, axis = word.split("_")
-            base = memories[f"{quantity}_base_{axis}"]
-            strobe = self._host("write_state")[number]
+                by_host = {}
+                if quantity in ("x_base", "v_base", "v"):
+                    by_host["by_host"] = strobes[f"{quantity[0]}_{axis}"], self._host("data")
+                own = valid & last if "base" in quantity else valid, pipe.output(f"{result}_{axis}", done)
+                self._written(memories[f"{quantity}_{axis}"], own=own, **by_host)
+        for word in NODE_WORDS:
             m.d.comb += getattr(self, f"update_{word}").eq(pipe.output(word, done))
-            m.d.comb += getattr(self, f"host_{word}").eq(base.data)
-            self._host_writes(base, strobe)
-            if quantity == "v":
-                self._host_writes(memories[word], strobe)
-        m.d.comb += [self.update.eq(valid), self.update_row.eq(row)]
+            m.d.comb += getattr(self, f"host_{word}").eq(memories[f"{word[0]}_base{word[1:]}"].data)
+        m.d.comb += [self.update.eq(valid), self.update_row.eq(self._later(self.row, done))]
         for axis in AXES:
             force = BlockRam(width=self.parameters.formats.state, depth=self.parameters.node_rows)
             m.submodules[f"force_{axis}"] = force
-            written(force, f"force_{axis}")
-            m.d.comb += [force.address.eq(self._host("index")), getattr(self, f"host_force_{axis}").eq(force.data)]
+            self._written(force, own=(valid, pipe.output(f"force_{axis}", done)))
+            m.d.sync += force.address.eq(self._host("index"))
+            m.d.comb += getattr(self, f"host_force_{axis}").eq(force.data)
