@@ -60,16 +60,17 @@ class Fetch(wiring.Component):
         depth = 1 << (self._data_latency + 3).bit_length()  # enough for an entry a cycle
         entry = Cat(self.word, self.last, self.index)
         m.submodules.queue = queue = Queue(width=len(entry), depth=depth)
-        under_way = Signal(range(depth + 1))  # entries asked for and not yet taken
+        under_way = Signal(range(depth + 1))  # entries asked for and not yet taken, as known a cycle later
+        taken = Signal()
         ask = Signal()
         m.d.comb += ask.eq((under_way != depth) & ~self.flush)
         last, end = Signal(), Signal(len(self.address))  # the count stays as it is while entries are read
         m.d.sync += end.eq(self.count - 1)
         m.d.comb += last.eq(self.address == end)
         with m.If(self.flush):
-            m.d.sync += [self.address.eq(0), under_way.eq(0)]
+            m.d.sync += [self.address.eq(0), under_way.eq(0), taken.eq(0)]
         with m.Else():
-            m.d.sync += under_way.eq(under_way + ask - self.take)
+            m.d.sync += [taken.eq(self.take), under_way.eq(under_way + ask - taken)]
             with m.If(ask):
                 m.d.sync += self.address.eq(self.address + 1)
                 with m.If(last):

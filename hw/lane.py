@@ -204,14 +204,18 @@ class Lane(wiring.Component):
         return written, words
 
     def _edges(self):
-        """The edges' own words, each read when the edge processor needs it and written when it is done."""
+        """The edges' own words, each read when the edge processor needs it and written when it is done. There is time
+        for a register between the memories, whose places are given, and the edge processor."""
+        near = {}
         host, index, data = (self._host(name, HANDOVER - 1) for name in ("", "index", "data"))
         host_writes = {"length": self._host("write_length", HANDOVER - 1)}
         host_writes |= dict.fromkeys(("base", "ratio"), self._host("write_ratio", HANDOVER - 1))
         for word in EDGE_WORDS:
             ram = BlockRam(width=self._state[word].width, depth=self.parameters.rows)
+            near[word] = Signal(len(ram.data), name=f"near_{word}", reset_less=True)
             self._m.submodules[f"edge_{word}"] = ram
-            self._m.d.comb += getattr(self._edge, f"edge_{word}").eq(ram.data)
+            self._m.d.sync += near[word].eq(ram.data)
+            self._m.d.comb += getattr(self._edge, f"edge_{word}").eq(near[word])
             own = {"write": Const(0, 1), "write_address": index, "write_data": Const(0, 1)}
             if word in NEXT:
                 ready = self._ready(NEXT[word])
@@ -220,7 +224,7 @@ class Lane(wiring.Component):
                     "write_address": self._later("row", ready),
                     "write_data": getattr(self._edge, NEXT[word]),
                 }
-            own["address"] = self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY - 1)
+            own["address"] = self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY - 2)
             by_host = {"write": host_writes.get(word, Const(0, 1)), "write_data": data}
             handed(self._m, ram, host, by_host | {"write_address": index, "address": index}, own)
             if word in ("length", "ratio"):

@@ -162,7 +162,7 @@ class NodeUpdater(wiring.Component):
         """A word per node, read for ``arrival``, or for the host."""
         ram = BlockRam(width=width, depth=self.parameters.node_rows)
         self._m.submodules[name] = ram
-        address = self._later(self.row, arrival - READ_LATENCY - 1)
+        address = self._later(self.row, arrival - READ_LATENCY - 1 - self._early(arrival))
         handed(self._m, ram, self._host(""), {"address": self._host("index")}, {"address": address})
         return ram
 
@@ -178,25 +178,33 @@ class NodeUpdater(wiring.Component):
             for axis in AXES:
                 name = f"{quantity}_{axis}"
                 memories[name] = ram = self._memory(f"node_{name}", q.width, arrival[name])
-                inputs[name] = self._cast(ram.data, q)
+                inputs[name] = self._near(name, ram, q)
         for number, axis in enumerate(AXES):
             q = self.parameters.formats.accumulator
             ram = self._memory(f"load_{axis}", q.width, arrival[f"load_{axis}"])
-            inputs[f"load_{axis}"] = self._cast(ram.data, q)
+            inputs[f"load_{axis}"] = self._near(f"load_{axis}", ram, q)
             self._written(ram, by_host=(self._host("write_load")[number], self._host("data")))
             self._m.d.comb += getattr(self, f"host_load_{axis}").eq(ram.data)
         low = 0
         for part, q in self._mass.items():
             name = f"inverse_mass_{part}"
             ram = self._memory(name, q.width, arrival[name])
-            inputs[name] = self._cast(ram.data, q)
+            inputs[name] = self._near(name, ram, q)
             self._written(ram, by_host=(self._host("write_mass"), self._host("data")[low : low + q.width]))
             self._m.d.comb += self.host_mass[low : low + q.width].eq(ram.data)
             low += q.width
         return memories
 
-    def _cast(self, data, q):
-        return data.as_signed() if q.signed else data
+    def _near(self, name: str, ram: BlockRam, q):
+        """A memory's word when the pipeline needs it, where there is time for it from a register: the place of a memory
+        is given."""
+        word = Signal(shape(q), name=f"near_{name}", reset_less=True)
+        self._m.d["sync" if self._early(self.schedule.arrival[name]) else "comb"] += word.eq(ram.data)
+        return word
+
+    def _early(self, arrival: int) -> bool:
+        """Whether a word that is needed then can be read a cycle before."""
+        return GATHERED + arrival - READ_LATENCY - 1 > 0
 
     def _write_back(self, pipe, memories):
         m, done = self._m, self.datapath.done

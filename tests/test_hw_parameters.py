@@ -118,7 +118,7 @@ def test_a_word_may_be_named():
     ((Region.EDGE, 0, -1), "EDGE index must be below 1024, not -1"),
     ((Region.MATERIAL, 0, 0, 4), "MATERIAL lane must be below 4, not 4"),
     ((Region.NODE, 0, 0, 1), "NODE lane must be below 1, not 1"),
-    ((Region.CONTROL, 0, 22), "CONTROL index must be below 22, not 22"),
+    ((Region.CONTROL, 0, 23), "CONTROL index must be below 23, not 23"),
 ])
 def test_there_is_no_address_of_nothing(place, message):
     refused(lambda: Map(Parameters()).address(*place), message)

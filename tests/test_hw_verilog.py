@@ -69,8 +69,8 @@ def test_the_same_bytes_from_two_folders_and_two_hash_seeds(twice):
 
 def test_verilator_finds_nothing_but_what_is_waived(built, twice, tmp_path):
     assert build(replace(SMALL, updates=2), tmp_path)
-    for verilog in (built, twice[0] / VERILOG, tmp_path / VERILOG):
-        assert lint(verilog, top=TOP) == []
+    for written in (built, twice[0] / VERILOG, tmp_path / VERILOG):
+        assert lint(written, top=TOP) == []
 
 
 def test_every_waiver_is_needed(built):

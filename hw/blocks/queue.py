@@ -47,12 +47,13 @@ class Queue(wiring.Component):
         m = Module()
         m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=())
         write, read = words.write_port(), words.read_port(domain="comb")
-        level = Signal(range(self.depth + 1))  # words in the memory; one more stands in front of it, in a register
+        places = [Signal(range(self.depth), name=name) for name in ("next_in", "next_out")]
+        # A word stands in front of the memory, in a register: the memory is never full
         moves, waiting, passes = Signal(), Signal(), Signal()
         store, fetch = Signal(), Signal()
         m.d.comb += [
             moves.eq(~self.valid | self.take),
-            waiting.eq(level != 0),
+            waiting.eq(places[0] != places[1]),
             passes.eq(moves & ~waiting),
             store.eq(self.put & ~passes),
             fetch.eq(moves & waiting),
@@ -61,13 +62,11 @@ class Queue(wiring.Component):
         ]
         with m.If(moves):
             m.d.sync += [self.data.eq(Mux(waiting, read.data, self.data_in)), self.valid.eq(waiting | self.put)]
-        for port, steps in ((write, store), (read, fetch)):
-            place = Signal(range(self.depth), name="next_in" if port is write else "next_out")
+        for port, place, steps in ((write, places[0], store), (read, places[1], fetch)):
             m.d.comb += port.addr.eq(place)
             m.d.sync += place.eq(place + steps)
             with m.If(self.flush):
                 m.d.sync += place.eq(0)
-        m.d.sync += level.eq(level + store - fetch)
         with m.If(self.flush):
-            m.d.sync += [level.eq(0), self.valid.eq(0)]
+            m.d.sync += self.valid.eq(0)
         return m

@@ -50,7 +50,8 @@ def place_and_route(board: Board, folder: Path, name: str, seed: int) -> dict:
     device = f"--{board.device}", "--package", board.package, "--speed", str(board.grade)
     files = "--json", f"{name}.netlist.json", "--lpf", f"{name}.lpf", "--report", report, "--log", f"{name}.{seed}.log"
     free = "--lpf-allow-unconstrained", "--timing-allow-fail"
-    options = *device, *files, *free, "--freq", f"{board.target_mhz:g}", "--seed", str(seed)
+    placer = "--placer", "static"  # for four lanes a sixth less wire than the usual one's, and 15 % faster
+    options = *device, *files, *free, *placer, "--freq", f"{board.target_mhz:g}", "--seed", str(seed)
     netlist = (folder / f"{name}.netlist.json").read_bytes()
     made_from = hashlib.sha256(repr((options, versions())).encode() + netlist).hexdigest()
     stamp = folder / f"{name}.{seed}.sha256"
