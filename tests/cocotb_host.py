@@ -91,11 +91,17 @@ class Host:
         while int(self.dut.busy.value):
             sequencer = self.dut.sequencer
             row = int(sequencer.row_goes.value)
-            edges = row * sum(int(getattr(self.dut, f"lane{n}_valid").value) for n in range(PARAMETERS.lanes))
+            edges = sum(self._issues(getattr(self.dut, f"lane{n}")) for n in range(PARAMETERS.lanes))
             waits = [int(getattr(sequencer, f"{why}_waits").value) for why in ("node", "list", "end")]
             counted += [1, row, edges, *waits]
             await self.cycle()
         return list(counted)
+
+    @staticmethod
+    def _issues(lane) -> int:
+        """Whether the lane issues a valid edge: the bit is the entry's last."""
+        valid = int(lane.row_front_entry.value) >> records.width(records.edge_entry()) - 1 & 1
+        return int(lane.row_front_goes.value) & valid
 
     async def refused(self, requests):
         """All of them are refused, counted, and answer nothing."""

@@ -20,8 +20,8 @@ from sim.machines import BUILD
 FORMATS = Formats()
 TABLES, BATCH, BATCHES = 4, 50_000, 41
 VECTORS = BATCH * BATCHES
-# |u| and 1 / l are at most 1 with the table of 1 / sqrt(q) that the circuit has, and so are rho, sigma and the mantissa
-# of |g|: nothing can saturate these
+# A sixth of 1 / l is less than 1, |u| is at most 1 with the table of 1 / sqrt(q) that the circuit has, and so is sigma
+# times the mantissa of |g|: nothing can saturate these
 NEVER = {"inverse length", "direction", "length rate", "mantissa"}
 
 
@@ -74,6 +74,7 @@ class Run:
     def corners(self) -> Counter:
         """How many edges are exactly where the datapath decides."""
         m, inputs = self.model, self.inputs
+        end = 1 << FORMATS.damper_index.width + FORMATS.damper_fraction.width
         table = ~m["below"].astype(bool) & m["between"].astype(bool)
         at_g1, at_g2 = m["size"] == inputs["material_g1"], m["size"] == inputs["material_g2"]
         return Counter({name: int(np.count_nonzero(mask)) for name, mask in {
@@ -84,10 +85,9 @@ class Run:
             "g = 0": m["size"] == 0, "g < 0": m["negative"] == 1,
             "q < 1": m["short"] == 1, "q >= 1": m["short"] == 0, "too short": m["degenerate"] == 1,
             "a segment's edge": table & (m["place"] % (1 << FORMATS.damper_fraction.width) == 0),
-            "before the table": table & (m["place"] == 0),
-            "behind the table": table & (m["place"] == FORMATS.place.raw_max),
-            "first segment": table & (m["place"] > 0) & (m["segment"] == 0),
-            "last segment": table & (m["place"] < FORMATS.place.raw_max) & (m["segment"] == 511),
+            "before the table": table & (m["place"] < 0), "behind the table": table & (m["place"] >= end),
+            "first segment": table & (m["place"] == m["place"] % end) & (m["segment"] == 0),
+            "last segment": table & (m["place"] == m["place"] % end) & (m["segment"] == 511),
             "shift of 0 for f": m["f_shift"] == 0, "shift of -1 for f": m["f_shift"] == -1,
             "shift of 0 for s": m["s_shift"] == 0, "shift of -1 for s": m["s_shift"] == -1,
         }.items()})
