@@ -47,7 +47,7 @@ def test_random_images_give_the_same_bits_and_the_same_faults(seed):
                 machine.step()
             assert_same(*machines)
         faults |= set(machines[0].faults)
-    # d is at most 1 a component, every mantissa and 1 / l less: these can't leave their formats whatever the tables hold
+    # d is at most 1 a component, every mantissa and 1 / l less: these can't leave their formats, whatever tables hold
     assert faults == set(compiled(Formats())[1]) - {"direction", "inverse length", "mantissa"}
 
 
