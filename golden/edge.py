@@ -115,8 +115,9 @@ def damper(fmt, tables, material, size, g, g_shift):
     # Where |g| lies among the table's segments: octaves and the fraction of one, which is linear in |g|
     octave_fraction = g.field(0, fmt.octave_fraction)
     octaves = octave_fraction - (g_shift + material.first_octave)
-    place = octaves.to(fmt.place).to(fmt.place, left=material.fineness)
-    segment = place.field(fmt.place.frac_bits, fmt.damper_index)
+    finest = Q(octaves.fmt.int_bits + fmt.fineness.raw_max, fmt.damper_fraction.width)  # loses nothing
+    place = octaves.to(finest).to(finest, left=material.fineness)  # segment, fraction of it
+    segment = place.field(finest.frac_bits, fmt.damper_index)
     fraction = place.field(0, fmt.damper_fraction)
     word = tables.damper(material.table, segment)
     rho_middle = cut(word.rho_value - word.rho_slope * fraction, fmt.mantissa)

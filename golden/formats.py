@@ -156,12 +156,6 @@ class Formats:
     def damper_fraction(self):
         return unsigned(0, self.operand - 1)
 
-    @cached_property
-    def place(self):
-        """Where |g| lies in a material's table: segment and fraction of one. Outside the table it means nothing,
-        but nothing is lost."""
-        return Q(self.octave.int_bits + 2 + self.fineness.raw_max, self.damper_fraction.width)
-
     octave = Q(6, 9, name="octave", unit="octave")
     """A place on the logarithmic axis of |g|: octaves above the full scale, and the finest segments of one."""
 

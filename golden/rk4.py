@@ -48,15 +48,19 @@ def rk4(stage, base, total, slope):
     """
     start = stage.last.select(base + sixth(total), base)
     value = start + stage.half.select(slope.scale(-1), slope)
-    total = stage.first.select(0, total) + stage.double.select(slope.scale(1), slope)
-    return total, value
+    return summed(stage, total, slope), value
 
 
 def rk4_early(stage, base, total, slope):
     """`rk4` for a slope that is known early: in the last stage too it comes whole, and the sum is divided by six."""
-    total = stage.first.select(0, total) + stage.double.select(slope.scale(1), slope)
+    total = summed(stage, total, slope)
     change = stage.last.select(sixth(total), stage.half.select(slope.scale(-1), slope))
     return total, base + change
+
+
+def summed(stage, total, slope):
+    """The weighted sum of a step's slopes, with this one."""
+    return stage.first.select(0, total) + stage.double.select(slope.scale(1), slope)
 
 
 def weigh(stage, factor):

@@ -62,7 +62,6 @@ def test_every_format_that_reports_or_is_documented_has_its_own_name():
     names = [q.name for q in FMT.all()]
     assert len(set(names)) == len(names) and "" not in names
     assert {"position", "velocity", "force", "mantissa", "octave"} <= set(names)
-    assert not FMT.place.name  # outside of a table its saturation means nothing
 
 
 def test_the_table_of_the_documentation_has_a_row_for_each_format():

@@ -41,7 +41,7 @@ class Multiplier(wiring.Component):
             raise ValueError(f"registers must be at least 2, not {registers!r}")
         self.registers = registers
         a, b = Shape.cast(a), Shape.cast(b)
-        self.kind = f"multiplier_{_letter(a)}{a.width}_{_letter(b)}{b.width}"
+        self.kind = f"multiplier_{letter(a)}{a.width}_{letter(b)}{b.width}"
         product = Shape(a.width + b.width, a.signed or b.signed)
         super().__init__({"a": In(a), "b": In(b), "product": Out(product)})
 
@@ -75,5 +75,6 @@ class Multiplier(wiring.Component):
         return m
 
 
-def _letter(shape: Shape) -> str:
+def letter(shape: Shape) -> str:
+    """Of a kind's name: whether an operand is signed."""
     return "s" if shape.signed else "u"

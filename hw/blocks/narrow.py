@@ -4,6 +4,8 @@ from amaranth.hdl import Module, Mux, Shape, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from .multiplier import letter
+
 
 def levels(bits: int) -> int:
     """Of sums of two, from one row for each bit."""
@@ -41,7 +43,7 @@ class NarrowMultiplier(wiring.Component):
         if registers < (least := max(1, levels(b.width))):
             raise ValueError(f"registers must be at least {least}, not {registers!r}")
         self.registers = registers
-        self.kind = f"narrow_multiplier_{'s' if a.signed else 'u'}{a.width}_{b.width}"
+        self.kind = f"narrow_multiplier_{letter(a)}{a.width}_{b.width}"
         super().__init__({"a": In(a), "b": In(b), "product": Out(Shape(a.width + b.width, a.signed))})
 
     def elaborate(self, platform):

@@ -50,7 +50,7 @@ def place_and_route(board: Board, folder: Path, name: str, seed: int) -> dict:
     device = f"--{board.device}", "--package", board.package, "--speed", str(board.grade)
     files = "--json", f"{name}.netlist.json", "--lpf", f"{name}.lpf", "--report", report, "--log", f"{name}.{seed}.log"
     free = "--lpf-allow-unconstrained", "--timing-allow-fail"
-    placer = "--placer", "static"  # for four lanes a sixth less wire than the usual one's, and 15 % faster
+    placer = "--placer", "static"  # less wire for four lanes: 586,000; the usual one 704,000, for a similar circuit
     options = *device, *files, *free, *placer, "--freq", f"{board.target_mhz:g}", "--seed", str(seed)
     netlist = (folder / f"{name}.netlist.json").read_bytes()
     made_from = hashlib.sha256(repr((options, versions())).encode() + netlist).hexdigest()
