@@ -18,6 +18,13 @@ def normalise(vector, operand: int):
     return [x.to(mantissa, left=shift) for x in vector], shift
 
 
+def leading(x, operand: int):
+    """The ``operand`` leading bits of ``x``, not negative, and their shift: ``x = mantissa * 2**-shift``, but for what
+    is below the last place."""
+    shift = x.lead([x], x.fmt.width - operand)
+    return cut(x.to(x.fmt, left=shift), unsigned(x.fmt.int_bits, operand - x.fmt.int_bits)), shift
+
+
 def magnitude(x, operand: int):
     """``|x|``, its mantissa in [1/2, 1) and the shift: ``|x| = mantissa * 2**(x.fmt.int_bits - 1 - shift)``.
 

@@ -3,7 +3,7 @@
 A block-normalised quantity ``q`` is a mantissa and a shift: its value is ``q * 2**-q_shift``.
 """
 
-from .block import clamp, cut, difference, dot, magnitude, normalise, with_sign
+from .block import clamp, cut, difference, dot, leading, magnitude, normalise, with_sign
 from .qformat import Q
 from .rk4 import rk4, weigh
 
@@ -36,7 +36,7 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
     """
     span = fmt.position.int_bits
     axis = axis_of(fmt, tables, i.x, j.x)
-    u, l, l_shift, inverse = (axis[name] for name in ("u", "l", "l_shift", "inverse"))
+    u, l_shift, inverse = (axis[name] for name in ("u", "l_shift", "inverse"))
 
     # ldot = u . w with w = vj - vi
     w, w_shift = normalise([c.scale(-1) for c in difference(j.v, i.v)], fmt.operand)
@@ -44,10 +44,10 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
 
     # g = k (a l - L) + c1 ldot
     share = state.ratio.to(fmt.share)
-    relaxed = voigt_length(fmt, share, l, l_shift)
+    relaxed = voigt_length(fmt, share, axis)
     (stretch,), stretch_shift = normalise([relaxed - state.length], fmt.operand)
-    spring = (material.k * stretch).to(fmt.trial, right=stretch_shift + material.k_shift)
-    dashpot = (material.c * rate).to(fmt.trial, right=w_shift + material.c_shift)
+    spring = (material.k * stretch).to(fmt.trial, right=stretch_shift + material.k_shift, cut=True)
+    dashpot = (material.c * rate).to(fmt.trial, right=w_shift + material.c_shift, cut=True)
     trial = spring + dashpot
     negative = trial < 0
     size, g, g_shift = magnitude(trial, fmt.operand)
@@ -81,7 +81,8 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
 
 
 def axis_of(fmt, tables, xi, xj):
-    """d = xj - xi, l = |d|, u = d / l and ``inverse`` = 1 / l; lengths are in units of 2^(span - l_shift) sizes."""
+    """d = xj - xi, ``square`` = l^2, ``inverse`` = 1 / l and u = d / l; lengths are in units of 2^(span - l_shift)
+    sizes."""
     span = fmt.position.int_bits
     d, d_shift = normalise([c.scale(-span) for c in difference(xj, xi)], fmt.operand)
     squared = dot(d, d)
@@ -91,16 +92,18 @@ def axis_of(fmt, tables, xi, xj):
     degenerate = square < 1
     degenerate.fault("edge length")
     inverse = interpolate_inverse(fmt, tables, square)
-    l = (square * inverse).to(fmt.reach)
     l_shift = d_shift + short
     products = [c * inverse for c in d]
     u = [short.select(product.scale(1), product).to(fmt.direction) for product in products]
     return locals()
 
 
-def voigt_length(fmt, share, l, l_shift):
-    """a l: what the Voigt part takes of the edge. L is this very product at the start, so that rest is exact."""
-    return (share * l).scale(fmt.position.int_bits).to(fmt.length, right=l_shift)
+def voigt_length(fmt, share, axis):
+    """a l = a l^2 / l: what the Voigt part takes of the edge. a l^2 is ready when 1 / l is. L is this very product at
+    the start, so that rest is exact."""
+    weighted, shift = leading(share * axis["square"], fmt.operand)
+    product = (weighted * axis["inverse"]).scale(fmt.position.int_bits)
+    return product.to(fmt.length, right=axis["l_shift"] + shift, cut=True)
 
 
 def interpolate_inverse(fmt, tables, square):

@@ -107,10 +107,6 @@ class Formats:
         return self._unsigned(0, "inverse length", "2^shift")
 
     @cached_property
-    def reach(self):
-        return self._unsigned(1, "edge length", "2^shift")
-
-    @cached_property
     def direction(self):
         return Q(2, self.operand - 2, name="direction", unit="1")
 

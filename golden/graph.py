@@ -79,9 +79,9 @@ class Node:
     def lead(vector, most):
         return vector[0]._make("lead", count(most), *vector, detail=most)
 
-    def to(self, fmt, *, left=None, right=None):
+    def to(self, fmt, *, left=None, right=None, cut=False):
         if right is not None:
-            return self._make("shift_right", fmt, self, right)
+            return self._make("shift_right", fmt, self, right, detail="cut" if cut else None)
         x = self if left is None else self._make("shift_left", self.fmt, self, left)
         return x._make("round", fmt, x)
 

@@ -110,10 +110,11 @@ class QArray:
         length = np.frexp(leading.astype(float))[1].astype(np.int64)
         return vector[0]._new(np.minimum(fmt.width - fmt.signed - length, most), count(most))
 
-    def to(self, fmt: Q, *, left=None, right=None):
+    def to(self, fmt: Q, *, left=None, right=None, cut=False):
         """This number (times ``2**left``, or ``2**-right``) in the format ``fmt``: rounded half up, then saturated.
 
-        ``left`` is a shift that loses no leading bits, as `lead` counts it.
+        ``left`` is a shift that loses no leading bits, as `lead` counts it. A shift to the right may ``cut`` instead of
+        round, which is down and awaits no carry.
 
         Saturation is a fault when the exact value is a whole step or more beyond the largest, or rounds to below
         the smallest, or when ``right`` is negative and the value not zero: a shift to the left is not on offer.
@@ -132,7 +133,7 @@ class QArray:
             rounded = floor = raw
         else:
             floor = raw >> drop
-            rounded = ((raw << 1) >> drop) + 1 >> 1
+            rounded = floor if cut else ((raw << 1) >> drop) + 1 >> 1
         result = np.minimum(np.maximum(rounded, fmt.raw_min), fmt.raw_max)
         if beyond is not None:
             result = np.where(beyond, np.where(raw < 0, fmt.raw_min, fmt.raw_max), result)

@@ -13,8 +13,14 @@ from golden.graph import AXES
 from .blocks.memory import READ_LATENCY, BlockRam
 from .parameters import node_place
 
+ANNOUNCED = READ_LATENCY + 1
+"""Cycles from the announcement of a force to the force: a register behind the block RAM, whose place is given."""
+
 WRITTEN = 2
 """Cycles from a force to the first in which its sum may be read."""
+
+READ = READ_LATENCY + 1
+"""Cycles from a row of nodes to the sums on it: they have a long way to go, from a register."""
 
 
 class Accumulator(wiring.Component):
@@ -24,9 +30,9 @@ class Accumulator(wiring.Component):
     Integer addition is associative: the order changes nothing. Nothing is cleared: the first force on a node in a
     stage replaces what is there.
 
-    A force is announced (``valid``, ``node``, ``first``) `READ_LATENCY` cycles before it comes (``pull_*``). Its sum
-    may be read `WRITTEN` cycles after that, `READ_LATENCY` cycles after ``sum_row`` as ``sum<n>_*``: the sums on the
-    ``updates`` nodes of a row of nodes.
+    A force is announced (``valid``, ``node``, ``first``) `ANNOUNCED` cycles before it comes (``pull_*``). Its sum may
+    be read `WRITTEN` cycles after that, `READ` cycles after ``sum_row`` as ``sum<n>_*``: the sums on the ``updates``
+    nodes of a row of nodes.
 
     Parameters
     ----------
@@ -58,34 +64,34 @@ class Accumulator(wiring.Component):
         m = Module()
         # The force under way: k cycles after its announcement
         valid, node, first = [self.valid], [self.node], [self.first]
-        for k in range(1, READ_LATENCY + WRITTEN):
-            lines = [(valid, "valid"), (node, "node")] + ([(first, "first")] if k < READ_LATENCY else [])
+        for k in range(1, ANNOUNCED + WRITTEN):
+            lines = [(valid, "valid"), (node, "node")] + ([(first, "first")] if k < ANNOUNCED - 1 else [])
             for line, name in lines:
                 register = Signal.like(line[0], name=f"{name}_{k}", reset_less=name != "valid")
                 m.d.sync += register.eq(line[-1])
                 line.append(register)
 
-        # At READ_LATENCY it meets its force. A sum of 1, 2 or 3 cycles ago is not in the word that was read: the latest
-        # of them counts. Which it is, is found out a cycle before; then the older ones are already there
-        now, recent = READ_LATENCY, range(1, READ_LATENCY + WRITTEN)
+        # At ANNOUNCED it meets its force. A sum of 1 to 4 cycles ago is not in the word that was read: the latest of
+        # them counts. Which it is, is found out before; all but that of 1 cycle ago are already there a cycle before
+        now, recent = ANNOUNCED, range(1, ANNOUNCED + WRITTEN)
         same = [Signal(name=f"same_{age}", reset_less=True) for age in recent]
         for age, bit in zip(recent, same, strict=True):
-            m.d.sync += bit.eq(valid[now - 2 + age] & (node[now - 2 + age] == node[now - 2]))
-        hits = [Signal(name=f"hit_{age}") for age in recent]
+            m.d.sync += bit.eq(valid[now - 3 + age] & (node[now - 3 + age] == node[now - 3]))
+        hits = [Signal(name=f"hit_{age}", reset_less=True) for age in recent]
         stored, latest = Signal(reset_less=True), Signal(reset_less=True)
         for number, hit in enumerate(hits):
-            m.d.comb += hit.eq(~first[now - 1] & same[number] & ~Cat(same[:number]).any())
-        m.d.sync += [stored.eq(~first[now - 1] & ~Cat(same).any()), latest.eq(hits[0])]
+            m.d.sync += hit.eq(~first[now - 2] & same[number] & ~Cat(same[:number]).any())
+        m.d.sync += [stored.eq(~first[now - 2] & ~Cat(same).any()), latest.eq(hits[0])]
 
         for axis in AXES:
             pull, width = getattr(self, f"pull_{axis}"), len(getattr(self, f"sum0_{axis}"))
             m.submodules[f"sum_{axis}_edges"] = own = BlockRam(width=width, depth=self._nodes)
-            # Of 1 and 2 cycles ago
+            # Of 1 to 3 cycles ago
             sums = [Signal(signed(width), name=f"sum_{axis}_{age}", reset_less=True) for age in recent[:-1]]
             earlier = Signal(signed(width), name=f"earlier_{axis}", reset_less=True)
-            m.d.sync += earlier.eq(_chosen(zip(hits[1:], sums, strict=True)))
+            m.d.sync += earlier.eq(_chosen([(stored, own.data), *zip(hits[1:], sums, strict=True)]))
             before = Signal(signed(width), name=f"before_{axis}")
-            m.d.comb += before.eq(_chosen([(stored, own.data), (latest, sums[0])]) | earlier)
+            m.d.comb += before.eq(_chosen([(latest, sums[0])]) | earlier)
             m.d.sync += sums[0].eq(before - pull if self._subtract else before + pull)
             m.d.sync += Cat(*sums[1:]).eq(Cat(*sums[:-1]))
             where = node[now + 1]
@@ -103,8 +109,8 @@ class Accumulator(wiring.Component):
                     copy.write_address.eq(row),
                     copy.write_data.eq(sums[0]),
                     copy.address.eq(self.sum_row),
-                    getattr(self, f"sum{n}_{axis}").eq(copy.data),
                 ]
+                m.d.sync += getattr(self, f"sum{n}_{axis}").eq(copy.data)
         return m
 
 

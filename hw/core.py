@@ -18,7 +18,7 @@ from .fetch import Fetch
 from .fields import stage_bits, unpack
 from .front import Front
 from .host import CHOICE, HANDOVER, MEMORY, HostPort, handed, host_signature
-from .lane import COPIED, NEXT, NODE_WORDS, Lane, latency, written
+from .lane import COPIED, NEXT, NODE_WORDS, STAGED, Lane, latency, written
 from .parameters import Parameters
 from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from .sequencer import Sequencer
@@ -81,6 +81,9 @@ class Core(wiring.Component):
 
         self._index, self._data = Signal.like(self._host.index), Signal.like(self._host.data)
         m.d.sync += [self._index.eq(self._host.index), self._data.eq(self._host.data)]
+        # Far from the lanes, which have time for it
+        self._row_stage = self._lines.later(self._sequencer.row_stage, STAGED, name="row_stage")
+        self._velocity_shift = self._lines.later(self._host.velocity_shift, 1, name="velocity_shift")
         self._idle = Signal(init=1)
         m.d.sync += self._idle.eq(~self._sequencer.busy)
         m.d.comb += self.busy.eq(self._sequencer.busy)
@@ -108,7 +111,7 @@ class Core(wiring.Component):
         ram = BlockRam(width=records.width(record), depth=depth)
         self._m.submodules[name] = ram
         by_host = {"address": self._lines.later(host_address, HANDOVER - 1, name=f"{name}_index")}
-        handed(self._m, ram, self._loading, by_host, {"address": fetch_address})
+        handed(self._m, ram, name, self._loading, by_host, {"address": fetch_address})
         self._m.d.comb += [ram.write_address.eq(host_address), ram.write_data.eq(self._data)]
         return ram
 
@@ -174,8 +177,8 @@ class Core(wiring.Component):
                 lane.flush.eq(self._loading),
                 lane.row_behind.eq(behind.index),
                 lane.edge_behind.eq(behind.word[entry]),
-                *(bit.eq(value) for bit, value in stage_bits(lane, sequencer.row_stage)),
-                lane.velocity_shift.eq(host.velocity_shift),
+                *(bit.eq(value) for bit, value in stage_bits(lane, self._row_stage)),
+                lane.velocity_shift.eq(self._velocity_shift),
             ]
         m.d.comb += [
             sequencer.row_last.eq(front.last),
@@ -209,7 +212,7 @@ class Core(wiring.Component):
                 updater.valid.eq(sequencer.node_goes & entry["valid"]),
                 updater.row.eq(front.index),
                 updater.mask.eq(entry["mask"]),
-                updater.velocity_shift.eq(host.velocity_shift),
+                updater.velocity_shift.eq(self._velocity_shift),
                 *(bit.eq(value) for bit, value in stage_bits(updater, sequencer.node_stage)),
             ]
         m.d.comb += [

@@ -24,7 +24,8 @@ PATIENCE = 16
 class EdgeDatapath:
     """`golden.datapath.edge_graph` with its schedule.
 
-    Everything but the two nodes comes late: materials and the edge's state are read when they are needed.
+    Everything but the two nodes' positions comes late: velocities, materials and the edge's state are read when they
+    are needed.
     """
 
     def __init__(self, formats: Formats, tables: int, cost: Cost):
@@ -36,7 +37,7 @@ class EdgeDatapath:
 
     @cached_property
     def schedule(self):
-        late = {name for name in self.graph.inputs if name.startswith(("material_", "edge_", "stage_"))}
+        late = {name for name in self.graph.inputs if name.startswith(("i_v", "j_v", "material_", "edge_", "stage_"))}
         prompt = {name for name in self.graph.outputs if name.startswith("pull_")}
         return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"}, prompt=prompt, patience=PATIENCE)
 
@@ -54,8 +55,9 @@ class EdgeDatapath:
 class EdgeProcessor(wiring.Component):
     """`golden.edge.edge` as a pipeline.
 
-    Throughput one edge per cycle, always; nothing stalls it. The two nodes and ``valid`` are taken in cycle 0, every
-    other input in the cycle ``datapath.schedule.arrival[name]``; an output is valid in cycle ``datapath.ready(name)``.
+    Throughput one edge per cycle, always; nothing stalls it. The two positions and ``valid`` are taken in cycle 0,
+    every other input in the cycle ``datapath.schedule.arrival[name]``; an output is valid in cycle
+    ``datapath.ready(name)``.
 
     Parameters
     ----------

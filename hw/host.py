@@ -31,8 +31,8 @@ HANDOVER = 3
 MEMORY = 1 + HANDOVER + READ_LATENCY
 """Cycles from an access to its word: the way to the memories, and theirs."""
 
-LATENCY = 4 + MEMORY + 3 * CHOICE
-"""Cycles from a request to its answer: request register, three of decoding, the memory, the choices."""
+LATENCY = 5 + MEMORY + 3 * CHOICE
+"""Cycles from a request to its answer: request register, four of decoding, the memory, the choices."""
 
 
 ANYTIME = Control.FAULTS, Control.REFUSED, Control.STOP
@@ -41,10 +41,14 @@ ANYTIME = Control.FAULTS, Control.REFUSED, Control.STOP
 WRITABLE = [register for register in Control if register not in READ_ONLY]
 
 
-def handed(m, ram, host, by_host: dict, own: dict):
-    """The ports of a memory from registers: what the host wants while nothing runs, and the machine's own."""
-    for port, value in own.items():
-        m.d.sync += getattr(ram, port).eq(Mux(host, by_host[port], value))
+def handed(m, ram, name: str, host, by_host: dict, own: dict):
+    """The ports of a memory from registers: what the host wants while nothing runs, and the machine's own. A port that
+    only one of them needs is that one's in any case."""
+    for port in own | by_host:
+        wanted = [choice[port] for choice in (by_host, own) if port in choice]
+        register = Signal.like(getattr(ram, port), name=f"{name}_{port}_next", reset_less=port != "write")
+        m.d.sync += register.eq(Mux(host, *wanted) if len(wanted) == 2 else wanted[0])
+        m.d.comb += getattr(ram, port).eq(register)
 
 
 def host_signature(state: int) -> dict:
@@ -119,11 +123,17 @@ class HostPort(wiring.Component):
             low += bits
         index, word, lane, region = parts
 
-        possible = Signal(len(Region))  # at all, were it this region; whether it is so just now is seen later
+        inside, lawful = Signal(len(Region)), self._lawful_data(data)
         for r in Region:
             limits = self._map.depth(r), len(self._map.words(r)), self._map.lanes(r)
-            inside = [place < limit for place, limit in zip((index, word, lane), limits, strict=True)]
-            m.d.comb += possible[r].eq(Cat(*inside).all() & self._lawful(r, write, index, word, data))
+            places = zip((index, word, lane), limits, strict=True)
+            m.d.comb += inside[r].eq(Cat(place < limit for place, limit in places).all())
+        request, write, index, word, lane, region, data, inside, lawful = self._registered(
+            m, "compared", request, write, index, word, lane, region, data, inside, lawful
+        )
+        possible = Signal(len(Region))  # at all, were it this region; whether it is so just now is seen later
+        for r in Region:
+            m.d.comb += possible[r].eq(inside[r] & (~write | self._writable(r, index, word, lawful)))
         request, write, index, word, lane, region, data, possible = self._registered(
             m, "judged", request, write, index, word, lane, region, data, possible
         )
@@ -169,30 +179,28 @@ class HostPort(wiring.Component):
         m.d.sync += [register.eq(value) for register, value in zip(registers, values, strict=True)]
         return registers
 
-    def _lawful(self, region, write, index, word, data):
-        """Whether such a word may be written, and such data into it."""
+    def _lawful_data(self, data):
+        """A bit for each control register: whether such data may be written into it."""
         p = self._map.parameters
+        lawful = {
+            Control.FAULTS: Const(1),
+            Control.REFUSED: Const(1),
+            Control.STOP: Const(1),
+            Control.ROW_COUNT: (data != 0) & (data <= p.rows),
+            Control.NODE_COUNT: (data != 0) & (data <= p.nodes),
+            Control.VELOCITY_SHIFT: data < 1 << p.formats.exponent.width - 1,
+            Control.RUN: (data != 0) & (data < 1 << 32),
+        }
+        return Cat(lawful.get(register, Const(0)) for register in Control)
+
+    def _writable(self, region, index, word, lawful):
+        """Whether such a word may be written; a control register, when its data are lawful."""
         if region == Region.NODE:
             words = enumerate(self._map.words(region))
-            read_only = Cat(word == number for number, name in words if self._map.read_only(region, name))
-            return ~(write & read_only.any())
-        if region != Region.CONTROL:
-            return Const(1)
-        writable = Array(
-            [
-                {
-                    Control.FAULTS: Const(1),
-                    Control.REFUSED: Const(1),
-                    Control.STOP: Const(1),
-                    Control.ROW_COUNT: (data != 0) & (data <= p.rows),
-                    Control.NODE_COUNT: (data != 0) & (data <= p.nodes),
-                    Control.VELOCITY_SHIFT: data < 1 << p.formats.exponent.width - 1,
-                    Control.RUN: (data != 0) & (data < 1 << 32),
-                }.get(register, Const(0))
-                for register in Control
-            ]
-        )
-        return ~write | writable[index[: (len(Control) - 1).bit_length()]]
+            return ~Cat(word == number for number, name in words if self._map.read_only(region, name)).any()
+        if region == Region.CONTROL:
+            return Array(lawful)[index[: (len(Control) - 1).bit_length()]]
+        return Const(1)
 
     def _control_writes(self, m, written, refused):
         for register, target in (

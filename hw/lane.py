@@ -1,13 +1,13 @@
 """A lane: an edge processor, the memories of its edges, its copy of the nodes and its sums of forces."""
 
-from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal
+from amaranth.hdl import Array, Cat, Module, Mux, ResetSignal, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from golden import records
 from golden.graph import AXES
 
-from .accumulator import WRITTEN, Accumulator
+from .accumulator import ANNOUNCED, WRITTEN, Accumulator
 from .blocks.memory import READ_LATENCY, BlockRam, LutRam
 from .choice import choose
 from .delay import DelayLines
@@ -23,18 +23,24 @@ EDGE_WORDS = ("length", "base", "ratio", "total")
 NEXT = {"base": "base_next", "ratio": "ratio_next", "total": "total_next"}
 
 
+FETCHED = READ_LATENCY + 1
+"""Cycles from the issue of an edge to its nodes in registers."""
+
+STAGED = 1
+"""Cycles from an edge in front to its Runge-Kutta stage on the lane's ports."""
+
 COPIED = 1
 """Cycles from a node's new state to its copy in a lane's memories: they are far from the node updater."""
 
 
 def written(datapath: EdgeDatapath, output: str) -> int:
     """Cycles from the issue of an edge to its new word, an output, in the memory."""
-    return READ_LATENCY + datapath.ready(output) + 1
+    return FETCHED + datapath.ready(output) + 1
 
 
 def latency(datapath: EdgeDatapath) -> int:
     """Cycles from the issue of an edge to the first in which the sums with its force may be read."""
-    return READ_LATENCY + datapath.ready("pull_x") + WRITTEN
+    return FETCHED + datapath.ready("pull_x") + WRITTEN
 
 
 def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
@@ -91,14 +97,14 @@ class Lane(wiring.Component):
     row_behind_valid, row_behind_ready, row_ready, node_behind_valid, node_behind_ready, node_ready : In(1)
         As of `hw.front.Front`.
     stage_first, stage_last, stage_half, stage_double : In(1)
-        The Runge-Kutta stage of the edge in front.
+        The Runge-Kutta stage of the edge that was in front `STAGED` cycles before.
     velocity_shift : In
         Static.
     update_row, update<n>, update<n>_x_*, update<n>_v_* : In
         The new states of the nodes of a row, if ``update<n>``; in the lane's memories `COPIED` cycles later.
     sum<n>_i_*, sum<n>_j_* : Out
-        The forces summed on the nodes of a row as first and as second ends of edges, `READ_LATENCY` cycles after it
-        came to the front.
+        The forces summed on the nodes of a row as first and as second ends of edges, `hw.accumulator.READ` cycles
+        after it came to the front.
     fault : Out
         One bit for each name in ``datapath.faults``.
     host_* : In / Out
@@ -115,6 +121,8 @@ class Lane(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.edge_processor = self._edge = edge = EdgeProcessor(self.datapath)
+        self._reset = edge.reset = Signal(name="reset_near", reset_less=True)
+        m.d.sync += self._reset.eq(ResetSignal())
         self._m, self._ready, self._arrival = m, self.datapath.ready, self.datapath.schedule.arrival
         self._lines = DelayLines(m)
         self._fronts()
@@ -123,18 +131,18 @@ class Lane(wiring.Component):
         self._material()
         self._sums()
         m.d.comb += edge.valid.eq(self._later("valid", 0))
-        m.d.sync += edge.velocity_shift.eq(self.velocity_shift)
+        m.d.comb += edge.velocity_shift.eq(self._lines.later(self.velocity_shift, 2))
         for bit in ("first", "last", "half", "double"):
             name = f"stage_{bit}"
             near = Signal(name=f"{name}_near", reset_less=True)
             m.d.sync += near.eq(getattr(self, name))
-            later = self._lines.later(near, READ_LATENCY + self._arrival[name] - 1, name=name)
+            later = self._lines.later(near, FETCHED + self._arrival[name] - STAGED - 1, name=name)
             m.d.comb += getattr(edge, name).eq(later)
         for name in ("write", "address", "data", "read"):
             by_host = {"write": "write_table", "address": "index", "read": ""}.get(name, name)
             m.d.sync += getattr(edge, f"table_{name}").eq(self._host(by_host, HANDOVER - 1))
         m.d.comb += self.host_table.eq(edge.table_word)
-        m.d.sync += self.fault.eq(edge.fault)
+        m.d.sync += self.fault.eq(Mux(self._reset, 0, edge.fault))
         self._lines.build()
         return m
 
@@ -156,7 +164,7 @@ class Lane(wiring.Component):
 
     def _later(self, name: str, cycle: int):
         """What was issued, when its edge is in ``cycle`` of the edge processor; its nodes are read before cycle 0."""
-        return self._lines.later(self._issued[name], READ_LATENCY + cycle, name=name, reset=name == "valid")
+        return self._lines.later(self._issued[name], FETCHED + cycle, name=name, reset=name == "valid")
 
     def _host(self, name: str, cycles: int = HANDOVER):
         """What comes from the host, which is far: later by as many registers, of which the last may be one behind a
@@ -165,14 +173,16 @@ class Lane(wiring.Component):
         return self._lines.later(getattr(self, name), cycles, name=name, reset=True)
 
     def _nodes(self):
-        """Two copies of the nodes' states, one for each end of an edge."""
+        """Two copies of the nodes' states, one for each end of an edge, each read when the edge processor needs it:
+        a node's state stays until all its edges' forces have been summed."""
         p = self.parameters
         written, words = self._copied()
         for end in "ij":
-            row, column = p.node_place(self._issued[end])
-            column = self._lines.later(column, READ_LATENCY, name=f"{end}_column")
             for number, word in enumerate(NODE_WORDS):
                 target, found = getattr(self._edge, f"{end}_{word}"), []
+                address = self._arrival.get(target.name, 0) - FETCHED
+                row, column = p.node_place(self._later(end, address))
+                column = self._lines.later(column, READ_LATENCY, name=f"{target.name}_column")
                 for n in range(p.updates):
                     ram = BlockRam(width=len(words[n, word]), depth=p.node_rows)
                     self._m.submodules[f"node_{end}_{word}_{n}"] = ram
@@ -183,7 +193,9 @@ class Lane(wiring.Component):
                         ram.address.eq(row),
                     ]
                     found.append(ram.data)
-                self._m.d.comb += target.eq(Array(found)[column])
+                near = Signal.like(target, name=f"near_{end}_{word}", reset_less=True)
+                self._m.d.sync += near.eq(Array(found)[column])
+                self._m.d.comb += target.eq(near)
 
     def _copied(self):
         """(row and strobes, words) in registers: the updaters' new states, or what the host writes."""
@@ -216,19 +228,21 @@ class Lane(wiring.Component):
             self._m.submodules[f"edge_{word}"] = ram
             self._m.d.sync += near[word].eq(ram.data)
             self._m.d.comb += getattr(self._edge, f"edge_{word}").eq(near[word])
-            own = {"write": Const(0, 1), "write_address": index, "write_data": Const(0, 1)}
+            own = {"address": self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY - 2)}
             if word in NEXT:
                 ready = self._ready(NEXT[word])
-                own = {
+                own |= {
                     "write": self._later("valid", ready),
                     "write_address": self._later("row", ready),
                     "write_data": getattr(self._edge, NEXT[word]),
                 }
-            own["address"] = self._later("row", self._arrival[f"edge_{word}"] - READ_LATENCY - 2)
-            by_host = {"write": host_writes.get(word, Const(0, 1)), "write_data": data}
-            handed(self._m, ram, host, by_host | {"write_address": index, "address": index}, own)
+            by_host = {}
+            if word in host_writes:
+                by_host |= {"write": host_writes[word], "write_address": index, "write_data": data}
             if word in ("length", "ratio"):
+                by_host["address"] = index
                 self._m.d.comb += getattr(self, f"host_{word}").eq(ram.data)
+            handed(self._m, ram, f"edge_{word}", host, by_host, own)
 
     def _material(self):
         """A small memory for each coefficient, read in the cycle before it is needed."""
@@ -253,10 +267,11 @@ class Lane(wiring.Component):
         self._m.d.comb += self.host_material.eq(word)
 
     def _sums(self):
-        p, announce = self.parameters, self._ready("pull_x") - READ_LATENCY
+        p, announce = self.parameters, self._ready("pull_x") - ANNOUNCED
         for end in "ij":
             sums = Accumulator(formats=p.formats, nodes=p.nodes, updates=p.updates, subtract=end == "j")
             self._m.submodules[f"sums_{end}"] = sums
+            sums.reset = self._reset
             self._m.d.comb += [
                 sums.valid.eq(self._later("valid", announce)),
                 sums.node.eq(self._later(end, announce)),

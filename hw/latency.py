@@ -9,7 +9,7 @@ from .edge import EdgeDatapath
 from .front import LATENCY as FRONT_LATENCY
 from .host import HANDOVER
 from .host import LATENCY as HOST_LATENCY
-from .lane import COPIED, NEXT, written
+from .lane import COPIED, FETCHED, NEXT, written
 from .lane import latency as sums_latency
 from .parameters import Parameters
 from .updater import NodeDatapath
@@ -38,7 +38,7 @@ def latencies(core: Core) -> list[tuple[str, str, int]]:
     last = max(written(edge, name) for name in NEXT.values())
     return [
         ("block RAM", "address to word", READ_LATENCY),
-        ("edge", "issue to its force on both nodes", READ_LATENCY + edge.ready("pull_x")),
+        ("edge", "issue to its force on both nodes", FETCHED + edge.ready("pull_x")),
         ("edge", "issue to the sums that contain its force", sums_latency(edge)),
         ("edge", "issue to its new ratio in the memory", last),
         ("node", "issue to its new state in the lanes' memories", node.latency + COPIED),

@@ -14,7 +14,8 @@ def netlist(component: wiring.Component, name: str, platform=None) -> str:
     """RTLIL of ``component`` as the module ``name``, and of what it is made of as modules ``<name>_<kind>``.
 
     A component with an attribute ``module`` is an instance of a module of that name, which is made elsewhere; one with
-    an attribute ``kind`` is called so, any other after its class. Elaborates the component; the wires of its
+    an attribute ``kind`` is called so, any other after its class. One with an attribute ``reset`` is reset by that
+    signal, a register that repeats the reset near by. Elaborates the component; the wires of its
     submodules' ports are renamed after submodule and port. The components may ask ``platform`` for modules of its own
     (`hw.families`).
     """
@@ -46,7 +47,7 @@ class _Kinds:
     def _place(self, fragment: Fragment, component: wiring.Component, label: str) -> Instance:
         kind = getattr(component, "module", None) or self.add(fragment, component, f"{self._prefix}_{_kind(component)}")
         text = self.modules.get(kind)  # None: of a module that is made elsewhere, and has both
-        clocks = {"clk": ClockSignal(), "rst": ResetSignal()}.items()
+        clocks = {"clk": ClockSignal(), "rst": getattr(component, "reset", ResetSignal())}.items()
         connections = {f"i_{port}": value for port, value in clocks if text is None or _has_input(text, port)}
         for port, member, value in _ports(component):
             connections[f"{'i' if member.flow == In else 'o'}_{port}"] = value

@@ -133,7 +133,8 @@ def round_half_up(wire, node, x):
 
 
 def shift_right(wire, node, x, count):
-    """Rounds and saturates ``x * 2**-count``, the count as `shift_count` gives it; second value: the fault."""
+    """Rounds, or cuts, and saturates ``x * 2**-count``, the count as `shift_count` gives it; second value: the
+    fault."""
     target = node.fmt
     drop = max(0, node.operands[0].fmt.frac_bits - target.frac_bits)
     x = x << _grown(node)
@@ -147,7 +148,8 @@ def shift_right(wire, node, x, count):
     beyond = some if never(some) else left & some.any()
     x = _shifted(wire, x, count, left=False)
     x, beyond, below = yield x >> drop, beyond, below
-    result, fault = _saturate(target, wire((x + 1) >> 1), x >> 1)
+    floor = x >> _rounding_bits(node)
+    result, fault = _saturate(target, floor if node.detail == "cut" else wire((x + 1) >> 1), floor)
     extreme = either(below, Const(target.raw_min, shape(target)), Const(target.raw_max, shape(target)))
     yield either(beyond, extreme, result), fault if never(beyond) else fault | beyond
 
@@ -165,8 +167,13 @@ def shift_count(node, count):
 
 
 def _grown(node) -> int:
-    """Places that a number gets before its right shift: one bit more than the result, to round with."""
-    return 1 + max(0, node.fmt.frac_bits - node.operands[0].fmt.frac_bits)
+    """Places that a number gets before its right shift."""
+    return _rounding_bits(node) + max(0, node.fmt.frac_bits - node.operands[0].fmt.frac_bits)
+
+
+def _rounding_bits(node) -> int:
+    """Bits that a shifted number has more than its result, to round with."""
+    return int(node.detail != "cut")
 
 
 def _saturate(target: Q, rounded, floor):

@@ -76,7 +76,7 @@ class Pipe:
         first = self._schedule.cycle[node]
         if first is None:  # late, or static and then the same in every cycle
             first = self._schedule.arrival.get(node.name, cycle)
-        return self._delays.later(self._inputs[node.name], cycle - first, name=node.name)
+        return self._delays.later(self._inputs[node.name], cycle - first)
 
     def _emit(self, node: Node):
         start, done = self._schedule.start[node], self._schedule.cycle[node]

@@ -88,17 +88,21 @@ class Sequencer(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         last_stage = RK4.stages - 1
-        rows_over, nodes_over = Signal(), Signal()
-        last_step = {name: Signal(name=f"{name}_last_step") for name in ("row", "node", "update")}
-        row_lead = Signal(2)  # stages that the front row is ahead of the updates
-        sum_lead = Signal(2)  # stages that the sums are ahead of the front node
-        summed = Signal(len(self.node_need))
-        update_stage = Signal(STAGE_BITS)
+        # What the start of a run sets needs no reset: before it no row and no node goes
+        rows_over, nodes_over = Signal(reset_less=True), Signal(reset_less=True)
+        last_step = {name: Signal(name=f"{name}_last_step", reset_less=True) for name in ("row", "node", "update")}
+        row_lead = Signal(2, reset_less=True)  # stages that the front row is ahead of the updates
+        sum_lead = Signal(2, reset_less=True)  # stages that the sums are ahead of the front node
+        summed = Signal.like(self.node_need, name="summed", reset_less=True)
+        row_stage, node_stage, update_stage = stages = [
+            Signal(STAGE_BITS, name=f"stage_of_{name}", reset_less=True) for name in ("rows", "nodes", "updates")
+        ]
+        m.d.comb += [self.row_stage.eq(row_stage), self.node_stage.eq(node_stage)]
 
         # Behind a list's last entry comes its first, of the next stage
         row_turns, node_turns = self.row_valid & self.row_last, self.node_valid & self.node_last
-        rows_end = rows_over | row_turns & (self.row_stage == last_stage) & last_step["row"]
-        nodes_end = nodes_over | node_turns & (self.node_stage == last_stage) & last_step["node"]
+        rows_end = rows_over | row_turns & (row_stage == last_stage) & last_step["row"]
+        nodes_end = nodes_over | node_turns & (node_stage == last_stage) & last_step["node"]
         far = (row_lead == 1) & ~row_turns | (row_lead == 0) & row_turns
         near = (summed >= self.node_behind_need) & ~self.node_behind_last
         m.d.comb += [
@@ -140,12 +144,12 @@ class Sequencer(wiring.Component):
         # A step's last stage is over, of its rows, nodes and updates. The steps are counted a cycle later: each is
         # longer than the cycles that it takes to see which is the last
         for name, stage, done in (
-            ("row", self.row_stage, row_stage_done),
-            ("node", self.node_stage, node_stage_done),
+            ("row", row_stage, row_stage_done),
+            ("node", node_stage, node_stage_done),
             ("update", update_stage, update_stage_done),
         ):
             turn, turned = Signal(name=f"{name}_turn"), Signal(name=f"{name}_turned")
-            left = Signal(len(self.steps), name=f"{name}_steps_left")
+            left = Signal(len(self.steps), name=f"{name}_steps_left", reset_less=True)
             m.d.comb += turn.eq(done & (stage == last_stage))
             m.d.sync += [turned.eq(turn), last_step[name].eq(left == 1)]
             with m.If(done):
@@ -162,8 +166,8 @@ class Sequencer(wiring.Component):
                 m.d.sync += {"row": rows_over.eq(1), "node": nodes_over.eq(1), "update": self.busy.eq(0)}[name]
 
         with m.If(self.start):
-            m.d.sync += [signal.eq(0) for signal in (self.row_stage, self.node_stage, update_stage, self.updated)]
-            m.d.sync += [signal.eq(0) for signal in (row_lead, sum_lead, summed, rows_over, nodes_over)]
+            m.d.sync += [signal.eq(0) for signal in (*stages, row_lead, sum_lead, summed, rows_over, nodes_over)]
+            m.d.sync += self.updated.eq(0)
             m.d.sync += stopping.eq(0)
             m.d.sync += [self.busy.eq(1), self.steps_done.eq(0)]
         return m

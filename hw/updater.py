@@ -2,7 +2,7 @@
 
 from functools import cached_property
 
-from amaranth.hdl import Cat, Const, Module, Mux, Signal
+from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -11,6 +11,7 @@ from golden.datapath import node_graph
 from golden.formats import Formats
 from golden.graph import AXES
 
+from .accumulator import READ
 from .blocks.memory import READ_LATENCY, BlockRam
 from .cost import Cost
 from .delay import DelayLines
@@ -26,10 +27,7 @@ RESULTS = {"x_base": "x", "v_base": "v", "v": "v", "x_total": "x_total", "v_tota
 """Where a node's memories get their next words from; a base is written in a step's last stage."""
 
 
-NEVER = Const(0, 1), Const(0, 1)
-"""Nothing is written."""
-
-GATHERED = READ_LATENCY + 1
+GATHERED = READ + 1
 """Cycles from the issue of a node to its sums of forces in registers: they come from all lanes."""
 
 
@@ -83,7 +81,7 @@ class NodeUpdater(wiring.Component):
     stage_first, stage_last, stage_half, stage_double : In(1)
     velocity_shift : In
     sum<bank>_* : In
-        The sums of forces on the node, `READ_LATENCY` cycles after it was issued.
+        The sums of forces on the node, `hw.accumulator.READ` cycles after it was issued.
     update, update_row, update_x_*, update_v_* : Out
         As `hw.lane.Lane` takes them.
     fault : Out
@@ -128,13 +126,13 @@ class NodeUpdater(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         self._m, self._lines = m, DelayLines(m)
-        inputs = {"velocity_shift": self.velocity_shift}
+        inputs = {"velocity_shift": self._lines.later(self.velocity_shift, 1)}
         for bit in ("first", "last", "half", "double"):
             name = f"stage_{bit}"
             inputs[name] = self._later(getattr(self, name), self.schedule.arrival[name])
         others = Signal.like(self.mask, name="others")
         m.d.comb += others.eq(~self.mask)
-        others = self._lines.later(others, READ_LATENCY)
+        others = self._lines.later(others, READ)
         for bank in range(self.banks):
             for axis in AXES:
                 total = getattr(self, f"sum{bank}_{axis}")
@@ -163,14 +161,16 @@ class NodeUpdater(wiring.Component):
         ram = BlockRam(width=width, depth=self.parameters.node_rows)
         self._m.submodules[name] = ram
         address = self._later(self.row, arrival - READ_LATENCY - 1 - self._early(arrival))
-        handed(self._m, ram, self._host(""), {"address": self._host("index")}, {"address": address})
+        handed(self._m, ram, name, self._host(""), {"address": self._host("index")}, {"address": address})
         return ram
 
-    def _written(self, ram: BlockRam, *, by_host=NEVER, own=NEVER):
-        """What is written: by whom, a strobe and a word."""
-        by_host = {"write_address": self._host("index"), "write": by_host[0], "write_data": by_host[1]}
-        row = self._later(self.row, self.datapath.done)
-        handed(self._m, ram, self._host(""), by_host, {"write_address": row, "write": own[0], "write_data": own[1]})
+    def _written(self, name: str, ram: BlockRam, **writers):
+        """What is written: a strobe and a word of each who writes, ``by_host`` or ``own``."""
+        places = {"by_host": self._host("index"), "own": self._later(self.row, self.datapath.done)}
+        ports = {"by_host": {}, "own": {}}
+        for who, (strobe, word) in writers.items():
+            ports[who] = {"write": strobe, "write_address": places[who], "write_data": word}
+        handed(self._m, ram, name, self._host(""), **ports)
 
     def _memories(self, inputs):
         memories, arrival = {}, self.schedule.arrival
@@ -183,14 +183,14 @@ class NodeUpdater(wiring.Component):
             q = self.parameters.formats.accumulator
             ram = self._memory(f"load_{axis}", q.width, arrival[f"load_{axis}"])
             inputs[f"load_{axis}"] = self._near(f"load_{axis}", ram, q)
-            self._written(ram, by_host=(self._host("write_load")[number], self._host("data")))
+            self._written(f"load_{axis}", ram, by_host=(self._host("write_load")[number], self._host("data")))
             self._m.d.comb += getattr(self, f"host_load_{axis}").eq(ram.data)
         low = 0
         for part, q in self._mass.items():
             name = f"inverse_mass_{part}"
             ram = self._memory(name, q.width, arrival[name])
             inputs[name] = self._near(name, ram, q)
-            self._written(ram, by_host=(self._host("write_mass"), self._host("data")[low : low + q.width]))
+            self._written(name, ram, by_host=(self._host("write_mass"), self._host("data")[low : low + q.width]))
             self._m.d.comb += self.host_mass[low : low + q.width].eq(ram.data)
             low += q.width
         return memories
@@ -216,7 +216,8 @@ class NodeUpdater(wiring.Component):
                 if quantity in ("x_base", "v_base", "v"):
                     by_host["by_host"] = strobes[f"{quantity[0]}_{axis}"], self._host("data")
                 own = valid & last if "base" in quantity else valid, pipe.output(f"{result}_{axis}", done)
-                self._written(memories[f"{quantity}_{axis}"], own=own, **by_host)
+                name = f"{quantity}_{axis}"
+                self._written(f"node_{name}", memories[name], own=own, **by_host)
         for word in NODE_WORDS:
             m.d.comb += getattr(self, f"update_{word}").eq(pipe.output(word, done))
             m.d.comb += getattr(self, f"host_{word}").eq(memories[f"{word[0]}_base{word[1:]}"].data)
@@ -224,6 +225,6 @@ class NodeUpdater(wiring.Component):
         for axis in AXES:
             force = BlockRam(width=self.parameters.formats.state, depth=self.parameters.node_rows)
             m.submodules[f"force_{axis}"] = force
-            self._written(force, own=(valid, pipe.output(f"force_{axis}", done)))
+            self._written(f"force_{axis}", force, own=(valid, pipe.output(f"force_{axis}", done)))
             m.d.sync += force.address.eq(self._host("index"))
             m.d.comb += getattr(self, f"host_force_{axis}").eq(force.data)

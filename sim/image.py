@@ -143,4 +143,4 @@ def natural_length(image: Image) -> np.ndarray:
     i, j = ([number(column, fmt.position) for column in image.x[end].T] for end in image.edges.T)
     axis = axis_of(fmt, tables, i, j)
     share = number(image.ratio, fmt.ratio).to(fmt.share)
-    return voigt_length(fmt, share, axis["l"], axis["l_shift"]).raw
+    return voigt_length(fmt, share, axis).raw

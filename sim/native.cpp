@@ -32,13 +32,14 @@ static inline Int saturate(Int rounded, Int floor, Int low, Int high, Int *fault
     return result;
 }
 
+template <bool cut>
 static inline Int shift_right(Int raw, Int drop, Int right, Int low, Int high, Int *fault) {
     if (__builtin_expect(right < 0 && raw != 0, 0)) {
         if (fault) ++*fault;
         return raw < 0 ? low : high;
     }
     const Int sum = drop + right, by = sum < 0 ? 0 : sum > 62 ? 62 : sum;
-    return saturate(round_half_up(raw, by), raw >> by, low, high, fault);
+    return saturate(cut ? raw >> by : round_half_up(raw, by), raw >> by, low, high, fault);
 }
 
 // Bits that repeat the sign become 0

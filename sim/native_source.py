@@ -115,7 +115,7 @@ class _Program:
             raw, drop = _left(raw, -drop), 0
         bounds = f"{target.raw_min}, {target.raw_max}, {self._counter(target.name)}"
         if right:
-            return f"shift_right({raw}, {drop}, {right}, {bounds})"
+            return f"shift_right<{str(node.detail == 'cut').lower()}>({raw}, {drop}, {right}, {bounds})"
         rounded = f"round_half_up({raw}, {drop})" if drop else raw
         low, high = (_shifted(extreme, source, target) for extreme in (source.raw_min, source.raw_max))
         if target.raw_min <= low and high <= target.raw_max:

@@ -41,14 +41,14 @@ class Watched(QArray):
     def fault(self, name):
         self.faults.flagged.append((name, self.raw.astype(bool)))
 
-    def to(self, fmt, *, left=None, right=None):
+    def to(self, fmt, **how):
         watch = self.faults
         before = len(watch.flagged)
-        result = super().to(fmt, left=left, right=right)
+        result = super().to(fmt, **how)
         if fmt.name:
             watch.rounded.append((fmt.name, watch.flagged.pop()[1] if len(watch.flagged) > before else None))
             if watch.count_limits:
-                wide = super().to(Q(fmt.int_bits + 8, fmt.frac_bits), left=left, right=right).raw
+                wide = super().to(Q(fmt.int_bits + 8, fmt.frac_bits), **how).raw
                 for beyond, where in enumerate(("on", "beyond")):
                     hit = (wide == fmt.raw_max + beyond) | (wide == fmt.raw_min - beyond)
                     watch.limits[fmt.name, where] += np.count_nonzero(hit)

@@ -164,7 +164,7 @@ def test_an_edge_at_rest_is_exactly_at_rest(name, rng):
     edges.v[1] = edges.v[0]
     axis = axis_of(FMT, edges.tables, *(edges.vector(x, FMT.position) for x in edges.x))
     share = edges.number(edges.ratio, FMT.ratio).to(FMT.share)
-    got = edges.run(length=voigt_length(FMT, share, axis["l"], axis["l_shift"]).raw)
+    got = edges.run(length=voigt_length(FMT, share, axis).raw)
     assert not any(c.raw.any() for c in got["pull"])
     assert not got["slope"].raw.any() and not got["total_next"].raw.any()
     clamped = np.clip(edges.ratio, edges.record["a_min"], edges.record["a_max"])

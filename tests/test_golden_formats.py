@@ -33,7 +33,7 @@ def test_widths_are_the_two_word_lengths(operand, state):
     fmt = Formats(operand, state)
     states = "position", "velocity", "displacement", "ratio", "length", "trial", "creep", "accumulator"
     assert all(getattr(fmt, name).width == state and getattr(fmt, name).signed for name in states)
-    operands = "mantissa", "square", "inverse", "reach", "share", "direction", "rate"
+    operands = "mantissa", "square", "inverse", "share", "direction", "rate"
     assert all(getattr(fmt, name).width == operand for name in operands)
     # table words are two operands long for each quantity
     assert records.width(records.inverse_word(fmt)) == 2 * operand

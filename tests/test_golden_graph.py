@@ -86,7 +86,7 @@ def apply(n, x, inputs, contents, faults):
         case "round":
             return x[0].to(n.fmt)
         case "shift_right":
-            return x[0].to(n.fmt, right=x[1])
+            return x[0].to(n.fmt, right=x[1], cut=n.detail == "cut")
         case "read":
             table, word = n.detail
             raw = {name: contents[table][name][tuple(index.raw for index in x)] for name in word}

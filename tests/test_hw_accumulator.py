@@ -6,8 +6,7 @@ from hw_objects import simulate
 
 from golden.formats import Formats
 from golden.graph import AXES
-from hw.accumulator import WRITTEN, Accumulator
-from hw.blocks.memory import READ_LATENCY
+from hw.accumulator import ANNOUNCED, READ, WRITTEN, Accumulator
 
 FORMATS = Formats()
 NODES = 8
@@ -31,25 +30,25 @@ def accumulate(dut, nodes, first, pulls, gaps, noise):
     sums = []
 
     async def bench(ctx):
-        for cycle in range(starts[-1] + 1 + READ_LATENCY + WRITTEN):
-            item, arrived = announced.get(cycle), announced.get(cycle - READ_LATENCY)
+        for cycle in range(starts[-1] + 1 + ANNOUNCED + WRITTEN):
+            item, arrived = announced.get(cycle), announced.get(cycle - ANNOUNCED)
             ctx.set(dut.valid, item is not None)
             ctx.set(dut.node, int(noise.integers(NODES) if item is None else nodes[item]))
             ctx.set(dut.first, int(noise.integers(2) if item is None else first[item]))
             for axis, name in enumerate(AXES):
                 force = noise.integers(FORCE.raw_min, FORCE.raw_max) if arrived is None else pulls[arrived, axis]
                 ctx.set(getattr(dut, f"pull_{name}"), int(force))
-            if cycle >= starts[-1] + READ_LATENCY + WRITTEN:
+            if cycle >= starts[-1] + ANNOUNCED + WRITTEN:
                 ctx.set(dut.valid, 0)
                 break
             await ctx.tick()
-        for node in [*range(NODES), *[0] * READ_LATENCY]:
+        for node in [*range(NODES), *[0] * READ]:
             sums.append([ctx.get(getattr(dut, f"sum0_{axis}")) for axis in AXES])
             ctx.set(dut.sum_row, node)
             await ctx.tick()
 
     simulate(dut, bench)
-    return np.array(sums[READ_LATENCY:])
+    return np.array(sums[READ:])
 
 
 def model(nodes, first, pulls, sign):
@@ -103,10 +102,10 @@ def test_a_sum_may_be_read_as_soon_as_it_says(rng):
             ctx.set(dut.valid, 1)
             ctx.set(dut.first, 1)
             ctx.set(dut.node, cycle % NODES)
-            if cycle >= READ_LATENCY:
-                ctx.set(dut.pull_x, pulls[cycle - READ_LATENCY])
-            ctx.set(dut.sum_row, (cycle - READ_LATENCY - WRITTEN) % NODES)
-            if cycle >= 2 * READ_LATENCY + WRITTEN:
+            if cycle >= ANNOUNCED:
+                ctx.set(dut.pull_x, pulls[cycle - ANNOUNCED])
+            ctx.set(dut.sum_row, (cycle - ANNOUNCED - WRITTEN) % NODES)
+            if cycle >= ANNOUNCED + READ + WRITTEN:
                 seen.append(ctx.get(dut.sum0_x))
             await ctx.tick()
 

@@ -152,6 +152,6 @@ def test_random_integers_and_their_faults(rng):
 
 def test_an_edge_whose_words_come_back_too_late_is_refused():
     """Late for its next stage, or for the host who reads them after the last."""
-    core_to_ask(Parameters(cost=Cost(less=8)))
-    refused(lambda: Core(Parameters(cost=Cost(less=9))),
-            "the edge's base must be written within 83 cycles, not after 84")
+    core_to_ask(Parameters(cost=Cost(less=10)))
+    refused(lambda: Core(Parameters(cost=Cost(less=11))),
+            "the edge's base must be written within 85 cycles, not after 86")

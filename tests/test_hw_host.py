@@ -84,13 +84,14 @@ def test_a_run_shuts_the_door_at_once(name, later):
     write, address, data = BUSY[name]
 
     async def scenario(ctx, port):
-        dut, errors, before = port.dut, [], await port.state(ctx)
+        dut, errors, busy, before = port.dut, [], 0, await port.state(ctx)
         for cycle in range(later + LATENCY + 1):
             ctx.set(dut.request, cycle in (0, later))
             ctx.set(dut.write, 1 if cycle == 0 else write)
             ctx.set(dut.address, control(Control.RUN) if cycle == 0 else address)
             ctx.set(dut.write_data, 5 if cycle == 0 else data)
-            ctx.set(dut.busy, cycle >= 4)  # the sequencer's answer to start
+            ctx.set(dut.busy, busy)
+            busy = busy or ctx.get(dut.start)  # the sequencer's answer, a cycle later
             if ctx.get(dut.answer):
                 errors.append(ctx.get(dut.error))
             await port.cycle(ctx)

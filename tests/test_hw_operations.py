@@ -28,8 +28,8 @@ def to(fmt, **kwargs):
     return lambda x: {"out": x.to(Q(*fmt, name="narrow", **kwargs))}
 
 
-def right(fmt, **kwargs):
-    return lambda x, n: {"out": x.to(Q(*fmt, name="narrow", **kwargs), right=n)}
+def right(fmt, cut=False, **kwargs):
+    return lambda x, n: {"out": x.to(Q(*fmt, name="narrow", **kwargs), right=n, cut=cut)}
 
 
 def normalised(operand):
@@ -86,6 +86,9 @@ OPERATIONS = {
     "shift right, unsigned": ([U, SHIFT], right((0, 12), signed=False)),
     "shift right, signed to unsigned": ([S, SHIFT], right((1, 12), signed=False)),
     "shift right, unsigned to signed": ([U, SHIFT], right((-1, 12))),
+    "shift right and cut": ([WIDE, SHIFT], right((2, 16), cut=True)),
+    "shift right and cut, to a finer format": ([S, SHIFT], right((2, 20), cut=True)),
+    "shift right and cut, unsigned": ([U, SHIFT], right((0, 12), cut=True, signed=False)),
     "shift right without a fault": ([S, SHIFT], lambda x, n: {"out": x.to(Q(1, 12), right=n)}),
     "a bit that is a fault": ([S, U], reported),
     "one after the other": ([S, U, SHIFT], lambda x, y, n: {
@@ -165,11 +168,15 @@ def test_rounding_and_shifting_exhaustively_at_small_widths(source, target):
         np.arange(source.raw_min, source.raw_max + 1), np.arange(count.raw_min, count.raw_max + 1)))
     faults = Counter()
     x, n = QArray(raw, source, faults), QArray(shift, count, faults)
-    expected = {"rounded": x.to(target), "shifted": x.to(target, right=n)}
+
+    def all_of(x, n):
+        return {"rounded": x.to(target), "shifted": x.to(target, right=n), "cut": x.to(target, right=n, cut=True)}
+
+    expected = all_of(x, n)
 
     graph = Graph()
     a, b = graph.input("a", source), graph.input("b", count)
-    graph.finish({"rounded": a.to(target), "shifted": a.to(target, right=b)}, list(expected))
+    graph.finish(all_of(a, b), list(expected))
     dut = Piped(graph, Cost())
     got = stream(dut, {"a": raw, "b": shift}, list(expected))
     for label, number in expected.items():

@@ -13,6 +13,7 @@ from golden.graph import AXES
 from golden.qarray import QArray
 from golden.qformat import BIT
 from golden.rk4 import RK4
+from hw.accumulator import READ
 from hw.blocks.memory import READ_LATENCY
 from hw.host import HANDOVER
 from hw.lane import NODE_WORDS
@@ -96,7 +97,7 @@ class Bench:
         for bit, value in RK4.stage(number).items():
             ctx.set(getattr(dut, f"stage_{bit}"), value)
         for cycle in range(max(issued) + dut.latency + 2):
-            node, summed, done = issued.get(cycle), issued.get(cycle - READ_LATENCY), issued.get(cycle - dut.latency)
+            node, summed, done = issued.get(cycle), issued.get(cycle - READ), issued.get(cycle - dut.latency)
             ctx.set(dut.valid, node is not None)
             if node is not None:
                 ctx.set(dut.row, node)

@@ -123,7 +123,7 @@ def test_two_million_edges_are_the_same_bits_with_the_same_faults(bench, seed):
     assert len(corners) == 21 and not few
     for name in ("trial force", "creep rate", "ratio", "share"):
         assert limits[name, "on"] >= 10 and limits[name, "beyond"] >= 10, name
-    assert limits["length", "beyond"] >= 10 and limits["mantissa", "on"] >= 10
+    assert limits["mantissa", "on"] >= 10
 
 
 def test_one_wrong_bit_is_reported(bench, rng):
