@@ -20,7 +20,7 @@ capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
 .PHONY: compare verilog timing bench test verify lint lock help clean distclean environment
 
 compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on float64, integers and simulated circuit
-	@$(run) -m sim compare scenes/*.toml $(lanes) --out build/report
+	@$(run) -m sim compare scenes/*.toml $(lanes) $(updates) --out build/report
 	@echo "report: build/report/index.html, figures: build/report/compare.json"
 
 verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks

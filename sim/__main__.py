@@ -11,9 +11,9 @@ from pathlib import Path
 from golden import scene as scenes
 from golden.command import Parser, execute
 from golden.errors import InputError
-from sim import waves
+from sim import machines, waves
 from sim.errors import about
-from sim.run import BACKENDS, LANES
+from sim.run import BACKENDS, LANES, UPDATES
 
 
 def parser() -> Parser:
@@ -24,7 +24,6 @@ def parser() -> Parser:
     one.add_argument("scene", metavar="SCENE", help="a scene file (TOML)")
     one.add_argument("--backend", required=True, choices=BACKENDS,
                      help="float64, the circuit's integer model, or its Verilog under Verilator")
-    one.add_argument("--lanes", type=whole, metavar="P", help=f"edge processors of the circuit (rtl; {LANES})")
     one.add_argument("--waves", nargs="?", const="vcd", choices=waves.FORMATS, metavar="vcd|fst",
                      help="write the waveforms of the circuit's first 5000 busy cycles as well "
                           "(rtl; vcd, which is larger but needs no library)")
@@ -33,8 +32,6 @@ def parser() -> Parser:
 
     many = commands.add_parser("compare", help="run scenes on all backends side by side and report the differences")
     many.add_argument("scenes", nargs="+", metavar="SCENE", help="scene files (TOML)")
-    many.add_argument("--lanes", type=whole, default=LANES, metavar="P",
-                      help=f"edge processors of the circuit ({LANES})")
     many.add_argument("--out", default="build/report", metavar="DIR",
                       help="folder for compare.json and index.html (build/report)")
     many.set_defaults(run=compare)
@@ -47,7 +44,11 @@ def parser() -> Parser:
                        help="file for the figures (build/bench.json)")
     speed.set_defaults(run=bench)
 
-    for command in (one, many):
+    for command, only in ((one, "rtl; "), (many, "")):
+        command.add_argument("--lanes", type=whole, metavar="P",
+                             help=f"edge processors of the circuit ({only}{LANES})")
+        command.add_argument("--updates", type=whole, metavar="M",
+                             help=f"nodes that the circuit updates in a cycle, 1 or 2 ({only}{UPDATES})")
         command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
     return main
 
@@ -72,17 +73,18 @@ def run(args) -> int:
     from sim import folder, store
     from sim.run import run
 
-    for option in ("lanes", "waves"):
+    for option in ("lanes", "updates", "waves"):
         if getattr(args, option) and args.backend != "rtl":
             raise InputError(f"--{option} must go with --backend rtl, not {args.backend}")
     if args.waves:
         waves.check(Path(f"waves.{args.waves}"))
+    wanted = _circuit(args)[1] if args.backend == "rtl" else {}
     scene = scenes.load(args.scene)
     out = folder.claim(args.out, args.force)
     for suffix in waves.FORMATS:  # of an earlier run
         (out / f"waves.{suffix}").unlink(missing_ok=True)
     with about(scene):
-        result = run(scene, args.backend, lanes=args.lanes or LANES, waves=args.waves and out / f"waves.{args.waves}")
+        result = run(scene, args.backend, **wanted, waves=args.waves and out / f"waves.{args.waves}")
     store.save(scene, result, out)
     print(f"{scene.name}: {scene.steps} steps on {args.backend} in {result.seconds:.1f} s, "
           f"{len(scene.frames)} frames in {out / 'trajectory.npz'}")
@@ -91,20 +93,27 @@ def run(args) -> int:
     return 1 if result.faults else 0
 
 
+def _circuit(args):
+    """The circuit's parameters, and what was asked of them. Raises `InputError` if it can't have them."""
+    wanted = {"lanes": args.lanes or LANES, "updates": args.updates or UPDATES}
+    return machines.parameters(**wanted), wanted
+
+
 def compare(args) -> int:
-    from sim import batch, folder, limits, machines, report, terminal
+    from sim import batch, folder, limits, report, terminal
     from sim.compare import shortcomings
 
+    parameters, wanted = _circuit(args)
     loaded = [scenes.load(path) for path in args.scenes]
     names = [scene.name for scene in loaded]
     if twice := {name for name in names if names.count(name) > 1}:
         raise InputError(f"scenes must have names of their own, not {min(twice)!r} twice")
     for scene in loaded:
         with about(scene):
-            machines.check_room(limits.load(scene).image, args.lanes)
+            machines.check_room(limits.load(scene).image, parameters)
     out = folder.claim(args.out, args.force)
     with terminal.progress(loaded) as shown:
-        sections = batch.over_scenes(partial(report.section, lanes=args.lanes, folder=out), loaded, shown)
+        sections = batch.over_scenes(partial(report.section, **wanted, folder=out), loaded, shown)
     entries = [section.entry for section in sections]
     report.write(sections, out)
     terminal.print_table(entries)

@@ -11,7 +11,7 @@ import numpy as np
 
 from golden.problem import Scene
 from sim.face import watched
-from sim.run import BACKENDS, LANES, Result, run
+from sim.run import BACKENDS, LANES, UPDATES, Result, run
 
 BOUND = {False: 1e-5, True: 5e-5}
 """Largest max_dx_rel that passes, without and with force-dependent dampers."""
@@ -44,6 +44,7 @@ class Comparison:
             "steps": scene.steps,
             "dt": scene.dt,
             "lanes": self.rtl.lanes,
+            "updates": self.rtl.updates,
             "cycles": self.rtl.cycles,
             "rtl_equals_fixed": self.rtl.raw.same(self.fixed.raw),
             "max_dx_rel": float(dx.max()),
@@ -57,7 +58,7 @@ class Comparison:
         }
 
 
-def compare(scene: Scene, *, lanes: int = LANES,
+def compare(scene: Scene, *, lanes: int = LANES, updates: int = UPDATES,
             progress: Callable[[str, int], object] | None = None) -> Comparison:
     """Run the scene on the three backends; ``progress(backend, steps done)`` as in `run`."""
     began, results = perf_counter(), []
@@ -65,7 +66,7 @@ def compare(scene: Scene, *, lanes: int = LANES,
         told = partial(progress, backend) if progress else None
         if told:
             told(0)  # loading takes its time, the circuit's most of all
-        results.append(run(scene, backend, lanes=lanes, progress=told))
+        results.append(run(scene, backend, lanes=lanes, updates=updates, progress=told))
     return Comparison(scene, *results, perf_counter() - began)
 
 

@@ -30,28 +30,28 @@ def integer_model(image: Image, engine: str):
         yield NativeMachine(image)
 
 
-def parameters(lanes: int):
-    """The circuit that is simulated. Raises `InputError` for an impossible number of lanes."""
+def parameters(lanes: int, updates: int):
+    """The circuit that is simulated. Raises `InputError` for a number of lanes or of updates that it can't have."""
     from hw.parameters import Parameters
 
     try:
-        return Parameters(lanes=lanes)
+        return Parameters(lanes=lanes, updates=updates)
     except ValueError as error:
         raise InputError(str(error)) from None
 
 
-def check_room(image: Image, lanes: int):
+def check_room(image: Image, parameters):
     """Raise `InputError` for an object that is larger than the circuit."""
     from sim.program import Program
 
-    Program(image, parameters(lanes))
+    Program(image, parameters)
 
 
 @contextmanager
-def circuit(image: Image, lanes: int, waves: Path | None):
+def circuit(image: Image, parameters, waves: Path | None):
     from sim.rtl import RtlMachine  # Amaranth and Verilator are slow to load
 
-    machine = RtlMachine(image, parameters=parameters(lanes), folder=BUILD, waves=waves)
+    machine = RtlMachine(image, parameters=parameters, folder=BUILD, waves=waves)
     try:
         yield machine
     finally:

@@ -19,7 +19,7 @@ from sim.image import Loaded
 from sim.units import Units
 
 BACKENDS = "float", "fixed", "rtl"
-LANES = 2
+LANES, UPDATES = 2, 1
 CHECKS = 10  # steps of a run that the NumPy model computes again, if there are as many frames
 REPORT_EVERY = 200  # steps between two calls of `progress`
 
@@ -39,8 +39,8 @@ class Raw:
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What a run gives. ``raw``, ``units`` and ``faults`` belong to the integer backends, ``cycles`` and ``lanes``
-    to the circuit.
+    """What a run gives. ``raw``, ``units`` and ``faults`` belong to the integer backends, ``cycles``, ``lanes``
+    and ``updates`` to the circuit.
 
     A fault counts the saturations of a quantity, by the quantity's name; the circuit only tells 1 for "at least one".
     """
@@ -53,6 +53,7 @@ class Result:
     faults: dict[str, int] = field(default_factory=dict)
     cycles: int | None = None
     lanes: int | None = None
+    updates: int | None = None
 
     @property
     def saturations(self) -> int:
@@ -64,6 +65,7 @@ def run(
     backend: str,
     *,
     lanes: int = LANES,
+    updates: int = UPDATES,
     edge_order: np.ndarray | None = None,
     engine: str = "native",
     waves: Path | None = None,
@@ -78,8 +80,8 @@ def run(
     ----------
     backend
         "float" (`golden.model`), "fixed" (the integer model) or "rtl" (the circuit's Verilog under Verilator).
-    lanes
-        Edge processors of the circuit; "rtl" only.
+    lanes, updates
+        Edge processors and node updaters of the circuit; "rtl" only.
     edge_order
         (E,) permutation in which the integer backends work through the edges; the result is the same for any.
     engine
@@ -97,15 +99,16 @@ def run(
     InternalError
         If the compiled integer model disagrees with the NumPy model.
     """
-    _check(scene, backend, lanes, edge_order, engine, waves)
+    _check(scene, backend, edge_order, engine, waves)
+    circuit = backend == "rtl"
+    parameters = machines.parameters(lanes, updates) if circuit else None
     began = perf_counter()
     if backend == "float":
         trajectory = model.simulate(scene, progress)
         return Result("float", trajectory, perf_counter() - began)
 
     loaded = limits.load(scene, edge_order)
-    circuit = backend == "rtl"
-    with (machines.circuit(loaded.image, lanes, waves) if circuit
+    with (machines.circuit(loaded.image, parameters, waves) if circuit
           else machines.integer_model(loaded.image, engine)) as machine:
         witness = machines.Witness(loaded.image) if not circuit and engine != "numpy" else None
         frames = _frames(loaded, machine, witness, progress)
@@ -115,16 +118,15 @@ def run(
             faults={name: count for name, count in sorted(machine.faults.items()) if count},
             cycles=int(machine.cycles) if circuit else None,
             lanes=lanes if circuit else None,
+            updates=updates if circuit else None,
         )
 
 
-def _check(scene, backend, lanes, edge_order, engine, waves):
+def _check(scene, backend, edge_order, engine, waves):
     if backend not in BACKENDS:
         raise InputError(f"backend must be one of {', '.join(BACKENDS)}, not {backend!r}")
     if engine not in machines.ENGINES:
         raise InputError(f"engine must be one of {', '.join(machines.ENGINES)}, not {engine!r}")
-    if type(lanes) is not int or lanes < 1:
-        raise InputError(f"lanes must be a whole number of at least 1, not {lanes!r}")
     if waves is not None and backend != "rtl":
         raise InputError(f"waves must go with the backend rtl, not {backend}: only the circuit has signals")
     if waves is not None:

@@ -41,6 +41,7 @@ def summary(scene: Scene, result: Result) -> dict:
             "length": units.size, "time": units.dt, "velocity": units.velocity, "force": units.force,
         },
         "lanes": result.lanes,
+        "updates": result.updates,
         "cycles": result.cycles,
         "seconds": round(result.seconds, 3),
     }

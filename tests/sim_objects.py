@@ -46,8 +46,8 @@ def in_place_of_the_circuit(machine=Standin):
     asked = []
 
     @contextmanager
-    def circuit(image, lanes, waves):
-        asked.append((lanes, waves))
+    def circuit(image, parameters, waves):
+        asked.append((parameters.lanes, parameters.updates, waves))
         yield machine(image)
 
     circuit.asked = asked

@@ -16,7 +16,7 @@ from sim import compare as comparison
 from sim.__main__ import main
 from sim.compare import power
 from sim.folder import MARK
-from sim.run import LANES, run
+from sim.run import LANES, UPDATES, run
 
 ROOT = Path(__file__).parents[1]
 QUICK = changed(SCENE, "duration = 0.01", "duration = 0.002")
@@ -27,7 +27,7 @@ HARD = changed(QUICK, "force = [1, 0]", "force = [1e5, 0]")  # saturates
 def circuit(monkeypatch):
     stand_in = in_place_of_the_circuit()
     monkeypatch.setattr(machines, "circuit", stand_in)
-    monkeypatch.setattr(machines, "check_room", lambda image, lanes: None)
+    monkeypatch.setattr(machines, "check_room", lambda image, parameters: None)
     return stand_in
 
 
@@ -63,7 +63,7 @@ def test_run_writes_the_trajectory_and_a_summary(backend, scene, tmp_path, capsy
     phases = [{"name": "press", "steps": 20}, {"name": "phase 2", "steps": 50}]
     expected = {"scene": "block", "backend": backend, "dim": 2, "force_dependent": False, "nodes": 9, "edges": 16,
                 "size": 0.2, "steps": 70, "dt": 1e-4, "frames": len(kept.t), "saturations": 0, "faults": {},
-                "lanes": None, "cycles": None, "phases": phases,
+                "lanes": None, "updates": None, "cycles": None, "phases": phases,
                 "largest_displacement": float(np.linalg.norm(kept.x - kept.x[0], axis=2).max()),
                 "final_displacement": float(np.linalg.norm(kept.x[-1] - kept.x[0], axis=1).max())}
     assert {key: summary[key] for key in expected} == expected
@@ -75,12 +75,13 @@ def test_run_writes_the_trajectory_and_a_summary(backend, scene, tmp_path, capsy
 def test_run_on_the_circuit(circuit, scene, tmp_path, monkeypatch):
     monkeypatch.setattr(waves, "found", lambda header: True)
     out = tmp_path / "out"
-    assert main(["run", scene, "--backend", "rtl", "--lanes", "3", "--waves", "--out", str(out)]) == 0
+    assert main(["run", scene, "--backend", "rtl", "--lanes", "3", "--updates", "2", "--waves", "--out", str(out)]) == 0
     assert main(["run", scene, "--backend", "rtl", "--waves", "fst", "--out", str(out)]) == 0
     assert main(["run", scene, "--backend", "rtl", "--out", str(out)]) == 0
-    assert circuit.asked == [(3, out / "waves.vcd"), (LANES, out / "waves.fst"), (LANES, None)]
+    assert circuit.asked == [
+        (3, 2, out / "waves.vcd"), (LANES, UPDATES, out / "waves.fst"), (LANES, UPDATES, None)]
     summary = json.loads((out / "summary.json").read_text())
-    assert (summary["lanes"], summary["cycles"]) == (LANES, 7000)
+    assert (summary["lanes"], summary["updates"], summary["cycles"]) == (LANES, UPDATES, 7000)
 
 
 def test_a_later_run_replaces_the_earlier_ones_files(scene, tmp_path):
@@ -106,13 +107,13 @@ def test_compare(circuit, scene, tmp_path, capsys, monkeypatch):
     second = tmp_path / "second.toml"
     second.write_text(changed(QUICK, '"block"', '"other"'))
     out = tmp_path / "report"
-    assert main(["compare", scene, str(second), "--lanes", "2", "--out", str(out)]) == 0
+    assert main(["compare", scene, str(second), "--lanes", "3", "--updates", "2", "--out", str(out)]) == 0
     entries = json.loads((out / "compare.json").read_text())
-    assert [(e["scene"], e["lanes"]) for e in entries] == [("block", 2), ("other", 2)]
+    assert [(e["scene"], e["lanes"], e["updates"]) for e in entries] == [("block", 3, 2), ("other", 3, 2)]
     assert {path.name for path in out.iterdir()} == {MARK, "compare.json", "index.html"} | {
         f"{name}-{kind}.png" for name in ("block", "other") for kind in ("shapes", "curves")}
     said, err = lines(capsys)
-    assert err == [] and "circuit with 2 lanes" in said[0]
+    assert err == [] and "circuit with 3 lanes" in said[0]
     rows = [line.split() for line in said if line.startswith(("block", "other"))]
     for entry, row in zip(entries, rows, strict=True):
         assert row[:6] == [entry["scene"], "2", "9", "16", "70", "yes"] and row[-1] == "passes"
@@ -175,6 +176,11 @@ HELP = "(see python -m sim run --help)"
      f"argument --waves: invalid choice: 'png' (choose from 'vcd', 'fst') {HELP}"),
     (["run", "s.toml", "--backend", "fixed", "--lanes", "2", "--out", "o"],
      "--lanes must go with --backend rtl, not fixed"),
+    (["run", "s.toml", "--backend", "float", "--updates", "2", "--out", "o"],
+     "--updates must go with --backend rtl, not float"),
+    (["run", "s.toml", "--backend", "rtl", "--updates", "3", "--out", "o"],
+     "updates must be a whole number from 1 to 2, not 3"),
+    (["compare", "s.toml", "--lanes", "9", "--out", "o"], "lanes must be a whole number from 1 to 8, not 9"),
     (["run", "s.toml", "--backend", "float", "--waves", "vcd", "--out", "o"],
      "--waves must go with --backend rtl, not float"),
     (["run", "absent.toml", "--backend", "float", "--out", "o"],

@@ -13,8 +13,9 @@ from sim.compare import compare, power, shortcomings
 from sim.face import watched
 from sim.run import run
 
-KEYS = ["scene", "dim", "force_dependent", "nodes", "edges", "steps", "dt", "lanes", "cycles", "rtl_equals_fixed",
-        "max_dx_rel", "final_dx_rel", "bound", "recovery", "max_da", "saturations", "faults", "seconds"]
+KEYS = ["scene", "dim", "force_dependent", "nodes", "edges", "steps", "dt", "lanes", "updates", "cycles",
+        "rtl_equals_fixed", "max_dx_rel", "final_dx_rel", "bound", "recovery", "max_da", "saturations", "faults",
+        "seconds"]
 
 
 @pytest.fixture
@@ -43,7 +44,7 @@ def test_entry(circuit, material):
     entry = result.entry()
     assert list(entry) == KEYS
     json.dumps(entry, allow_nan=False)
-    expected = {"scene": "object", "dim": 2, "nodes": 12, "edges": 23, "steps": 25, "dt": DT, "lanes": 2,
+    expected = {"scene": "object", "dim": 2, "nodes": 12, "edges": 23, "steps": 25, "dt": DT, "lanes": 2, "updates": 1,
                 "cycles": 2500, "rtl_equals_fixed": True, "saturations": 0, "faults": {"fixed": {}, "rtl": {}},
                 "force_dependent": scene.force_dependent, "bound": 5e-5 if scene.force_dependent else 1e-5}
     assert {key: entry[key] for key in expected} == expected

@@ -53,7 +53,7 @@ def folder(tmp_path_factory):
         weight = [objects.phase(MESHES[3], 12, objects.bottom(MESHES[3]), name="stand")]
         solid = replace(objects.scene(MESHES[3], MATERIALS["viscoelastic"], DT, weight, 0.01, (0, 0, -9.81), every=4),
                         name="solid")
-        report.write([report.section(scene, lanes=2, folder=out) for scene in (flat, solid)], out)
+        report.write([report.section(scene, lanes=2, updates=1, folder=out) for scene in (flat, solid)], out)
     return out
 
 

@@ -118,9 +118,10 @@ def test_the_circuit_is_run_like_the_integer_model(monkeypatch, tmp_path):
     monkeypatch.setattr(machines, "circuit", circuit)
     scene = block(steps=(10, 5, 5))
     fixed = run(scene, "fixed")
-    rtl = run(scene, "rtl", lanes=3, waves=tmp_path / "waves.vcd")
-    assert circuit.asked == [(3, tmp_path / "waves.vcd")]
-    assert (rtl.cycles, rtl.lanes, fixed.cycles, fixed.lanes) == (2000, 3, None, None)
+    rtl = run(scene, "rtl", lanes=3, updates=2, waves=tmp_path / "waves.vcd")
+    assert circuit.asked == [(3, 2, tmp_path / "waves.vcd")]
+    assert (rtl.cycles, rtl.lanes, rtl.updates) == (2000, 3, 2)
+    assert (fixed.cycles, fixed.lanes, fixed.updates) == (None, None, None)
     assert rtl.raw.same(fixed.raw)
 
 
@@ -169,8 +170,9 @@ def test_progress(backend):
 @pytest.mark.parametrize("arguments, message", [
     ({"backend": "gpu"}, "backend must be one of float, fixed, rtl, not 'gpu'"),
     ({"backend": "fixed", "engine": "fast"}, "engine must be one of native, numpy, not 'fast'"),
-    ({"backend": "rtl", "lanes": 0}, "lanes must be a whole number of at least 1, not 0"),
-    ({"backend": "rtl", "lanes": 2.0}, "lanes must be a whole number of at least 1, not 2.0"),
+    ({"backend": "rtl", "lanes": 0}, "lanes must be a whole number from 1 to 8, not 0"),
+    ({"backend": "rtl", "lanes": 2.0}, "lanes must be a whole number from 1 to 8, not 2.0"),
+    ({"backend": "rtl", "updates": 3}, "updates must be a whole number from 1 to 2, not 3"),
     ({"backend": "fixed", "waves": "w.fst"},
      "waves must go with the backend rtl, not fixed: only the circuit has signals"),
     ({"backend": "rtl", "waves": Path("w.png")}, "waves must be a file ending in .vcd or .fst, not w.png"),

@@ -48,12 +48,13 @@ class Queue(wiring.Component):
         m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=())
         write, read = words.write_port(), words.read_port(domain="comb")
         places = [Signal(range(self.depth), name=name) for name in ("next_in", "next_out")]
-        # A word stands in front of the memory, in a register: the memory is never full
+        # A word stands in front of the memory, in a register: the memory is never full. Whether words wait in it is
+        # known from a register too: all of the word in front hangs on it
         moves, waiting, passes = Signal(), Signal(), Signal()
-        store, fetch = Signal(), Signal()
+        store, fetch, single = Signal(), Signal(), Signal()
         m.d.comb += [
             moves.eq(~self.valid | self.take),
-            waiting.eq(places[0] != places[1]),
+            single.eq(places[0] == (places[1] + 1)[: len(places[1])]),
             passes.eq(moves & ~waiting),
             store.eq(self.put & ~passes),
             fetch.eq(moves & waiting),
@@ -62,11 +63,12 @@ class Queue(wiring.Component):
         ]
         with m.If(moves):
             m.d.sync += [self.data.eq(Mux(waiting, read.data, self.data_in)), self.valid.eq(waiting | self.put)]
+        m.d.sync += waiting.eq(store | waiting & ~(fetch & single))
         for port, place, steps in ((write, places[0], store), (read, places[1], fetch)):
             m.d.comb += port.addr.eq(place)
             m.d.sync += place.eq(place + steps)
             with m.If(self.flush):
                 m.d.sync += place.eq(0)
         with m.If(self.flush):
-            m.d.sync += self.valid.eq(0)
+            m.d.sync += [self.valid.eq(0), waiting.eq(0)]
         return m

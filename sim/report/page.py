@@ -23,12 +23,12 @@ class Section:
     pictures: dict[str, str]  # "shapes", "curves" -> name of the file beside the page
 
 
-def section(scene: Scene, progress=None, *, lanes: int, folder: Path) -> Section:
+def section(scene: Scene, progress=None, *, lanes: int, updates: int, folder: Path) -> Section:
     """Compare a scene and draw it: the pictures go to the folder."""
     from sim.report import curves, shapes
 
     with about(scene):
-        comparison = compare(scene, lanes=lanes, progress=progress)
+        comparison = compare(scene, lanes=lanes, updates=updates, progress=progress)
     figures = {"shapes": shapes.draw(comparison), "curves": curves.draw(comparison)}
     pictures = {kind: f"{slug(scene.name)}-{kind}.png" for kind in figures}
     for kind, figure in figures.items():
