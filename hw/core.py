@@ -24,8 +24,9 @@ from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from .sequencer import Sequencer
 from .updater import NodeUpdater
 
-LISTED = 1 + READ_LATENCY
-"""Cycles from a list's address to its entry: a register behind the choice between the host and the `hw.fetch`."""
+LISTED = 1 + READ_LATENCY + 1
+"""Cycles from a list's address to its entry: a register behind the choice between the host and the `hw.fetch`, another
+behind the memory, whose place is given."""
 
 
 def row_latency(parameters: Parameters) -> int:
@@ -107,13 +108,15 @@ class Core(wiring.Component):
         return m
 
     def _entries(self, name, record, depth, fetch_address, host_address):
-        """A list's memory: read by its `Fetch`, or by the host while nothing runs."""
+        """A list's memory: read by its `Fetch`, or by the host while nothing runs; and its word, a cycle later."""
         ram = BlockRam(width=records.width(record), depth=depth)
         self._m.submodules[name] = ram
         by_host = {"address": self._lines.later(host_address, HANDOVER - 1, name=f"{name}_index")}
         handed(self._m, ram, name, self._loading, by_host, {"address": fetch_address})
         self._m.d.comb += [ram.write_address.eq(host_address), ram.write_data.eq(self._data)]
-        return ram
+        near = Signal(len(ram.data), name=f"{name}_near", reset_less=True)
+        self._m.d.sync += near.eq(ram.data)
+        return ram, near
 
     def _front(self, name, fetch):
         """The list's entry in front, and the one behind it: ``word``, ``last``, ``index`` of each."""
@@ -153,12 +156,12 @@ class Core(wiring.Component):
         m.submodules.row_highest = last = highest.Highest(count=2 * p.lanes, width=p.node_row_bits)
         size = width * p.lanes + p.node_row_bits
         m.submodules.row_fetch = fetch = Fetch(index_bits=p.row_bits, width=size, data_latency=row_latency(p))
-        words = []
+        words, self._edge_entries = [], []
         for number in range(p.lanes):
-            ram = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._index)
+            ram, near = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._index)
             m.d.comb += ram.write.eq(self._strobe(Region.EDGE, 0, number))
-            words.append(ram.data)
-        self._edge_entries = words
+            words.append(near)
+            self._edge_entries.append(ram.data)
         edges = [unpack(record, word) for word in words]
         behind_memory = row_latency(p) - LISTED
         later = [self._lines.later(word, behind_memory, name=f"edge_entry{n}") for n, word in enumerate(words)]
@@ -195,15 +198,16 @@ class Core(wiring.Component):
             index_bits=p.node_row_bits, width=width * p.updates, data_latency=LISTED
         )
         row, column = p.node_place(self._index)
-        self._node_entries = []
+        words, self._node_entries = [], []
         for number in range(p.updates):
-            ram = self._entries(f"node_entries{number}", record, p.node_rows, fetch.address, row)
+            ram, near = self._entries(f"node_entries{number}", record, p.node_rows, fetch.address, row)
             word = Map(p).words(Region.NODE).index("entry")
             m.d.comb += ram.write.eq(self._strobe(Region.NODE, word) & (column == number))
+            words.append(near)
             self._node_entries.append(ram.data)
         m.d.comb += [
             fetch.count.eq((host.nodes + (p.updates - 1)) >> p.updates.bit_length() - 1),
-            fetch.data.eq(Cat(*self._node_entries)),
+            fetch.data.eq(Cat(*words)),
         ]
         front, behind = self._front("node", fetch)
         for number, updater in enumerate(self.updaters):

@@ -41,7 +41,7 @@ class Cost:
     round: int = 0
     shift_right: int = 2
     read: int = READ_LATENCY
-    more: tuple[str, ...] = ("d", "stretch", "rho", "pull", "acceleration")
+    more: tuple[str, ...] = ("d", "relaxed", "stretch", "spring", "rho", "pull", "acceleration")
 
     def of(self, node: Node) -> int:
         """Cycles from a node's operands to its value."""

@@ -99,17 +99,18 @@ class Pipe:
         return multiplier.product
 
     def _operand(self, node, number, start):
-        """In the operation's first cycle. A count is made ready for its shift, with a register behind it where it is
-        known a cycle before."""
+        """In the operation's first cycle. A count is made ready for its shift, with as many registers behind it, two at
+        most, as it is known before."""
         if (node.kind, number) != ("shift_right", 1):
             return self.at(node.operands[number], start)
         count = node.operands[1]
-        if not self._schedule.known(count, start - 1):
-            return shift_count(node, self.at(count, start))
-        ready = shift_count(node, self.at(count, start - 1))
+        before = next(cycles for cycles in (2, 1, 0) if not cycles or self._schedule.known(count, start - cycles))
+        ready = shift_count(node, self.at(count, start - before))
+        if not before:
+            return ready
         register = Signal(len(ready), name=f"{node.name}_count", reset_less=True)
         self._m.d.sync += register.eq(ready)
-        return register
+        return self._delays.later(register, before - 1)
 
     def _steps(self, node, operands):
         """The operation's values, the registers that it costs behind the last of its steps."""

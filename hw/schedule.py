@@ -11,8 +11,9 @@ WIRES = {"scale", "field", "part"}
 CARRIES = {"add", "sub", "sum", "less"}
 """Operations that are a carry chain."""
 
-GREEDY = ("shift_right", "round", "shift_left", "select")
-"""Operations that are the better for one register more, those with the longest way first."""
+GREEDY = ("shift_right", "round", "shift_left", "select", "mul")
+"""Operations that are the better for one register more, those with the longest way first. A product has it before its
+multiplier, whose place is given."""
 
 
 class Schedule:
@@ -74,11 +75,14 @@ class Schedule:
         return [(n.name, n.kind, self.start[n], self.cycle[n]) for n in self.graph.nodes if n in self.start]
 
     def _cycles(self, node: Node) -> int:
-        return self.cost.of(node) + (node in self._more)
+        return self.cost.of(node) + (node in self._more and node.kind != "mul")
 
     def _waits(self, operand: Node, user: Node) -> int:
-        """Cycles that an operand waits in a register for its user: one where a number that has just been rounded is to
-        be added, compared or rounded once more, so that two carry chains are not in one cycle."""
+        """Cycles that an operand waits in a register for its user: one for a product with time, and one where a number
+        that has just been rounded is to be added, compared or rounded once more, so that two carry chains are not in
+        one cycle."""
+        if user.kind == "mul":
+            return int(user in self._more)
         while operand.kind in WIRES:
             operand = operand.operands[0]
         return int(rounds(operand) and not self._cycles(operand) and (user.kind in CARRIES or rounds(user)))

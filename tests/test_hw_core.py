@@ -154,4 +154,4 @@ def test_an_edge_whose_words_come_back_too_late_is_refused():
     """Late for its next stage, or for the host who reads them after the last."""
     core_to_ask(Parameters(cost=Cost(less=10)))
     refused(lambda: Core(Parameters(cost=Cost(less=11))),
-            "the edge's base must be written within 85 cycles, not after 86")
+            "the edge's base must be written within 87 cycles, not after 88")
