@@ -9,18 +9,18 @@ from amaranth.lib.wiring import In, Out
 from golden import records
 from golden.graph import AXES
 
+from .access import Access
 from .blocks import highest
 from .blocks.memory import READ_LATENCY, BlockRam
-from .choice import choose
 from .delay import DelayLines
 from .edge import EdgeDatapath
 from .fetch import Fetch
 from .fields import stage_bits, unpack
 from .front import Front
-from .host import CHOICE, HANDOVER, MEMORY, HostPort, handed, host_signature
+from .host import HANDOVER, HostPort, handed, host_signature
 from .lane import COPIED, NEXT, NODE_WORDS, STAGED, Lane, latency, written
 from .parameters import Parameters
-from .registers import COUNTERS, NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
+from .registers import COUNTERS, Map, Region
 from .sequencer import Sequencer
 from .updater import NodeUpdater
 
@@ -80,8 +80,7 @@ class Core(wiring.Component):
             m.submodules[f"lane{number}"] = lane = self._make_lane(p, self.datapath)
             self._lanes.append(lane)
 
-        self._index, self._data = Signal.like(self._host.index), Signal.like(self._host.data)
-        m.d.sync += [self._index.eq(self._host.index), self._data.eq(self._host.data)]
+        self._access = Access(m, self._lines, p, self._host)
         # Far from the lanes, which have time for it
         self._row_stage = self._lines.later(self._sequencer.row_stage, STAGED, name="row_stage")
         self._velocity_shift = self._lines.later(self._host.velocity_shift, 1, name="velocity_shift")
@@ -94,7 +93,11 @@ class Core(wiring.Component):
         self._rows()
         self._nodes()
         self._sums()
-        self._host_side()
+        self._access.to_nodes(self.updaters, self._node_entries, self._idle)
+        self._access.to_lanes(self._lanes, self._edge_entries, self._idle)
+        for name, member in self._host_members.items():
+            inner, outer = getattr(self._host, name), getattr(self, name)
+            m.d.comb += inner.eq(outer) if member.flow == In else outer.eq(inner)
         self._counters()
 
         fault = Signal(len(self.faults))
@@ -113,7 +116,7 @@ class Core(wiring.Component):
         self._m.submodules[name] = ram
         by_host = {"address": self._lines.later(host_address, HANDOVER - 1, name=f"{name}_index")}
         handed(self._m, ram, name, self._loading, by_host, {"address": fetch_address})
-        self._m.d.comb += [ram.write_address.eq(host_address), ram.write_data.eq(self._data)]
+        self._m.d.comb += [ram.write_address.eq(host_address), ram.write_data.eq(self._access.data)]
         near = Signal(len(ram.data), name=f"{name}_near", reset_less=True)
         self._m.d.sync += near.eq(ram.data)
         return ram, near
@@ -158,8 +161,8 @@ class Core(wiring.Component):
         m.submodules.row_fetch = fetch = Fetch(index_bits=p.row_bits, width=size, data_latency=row_latency(p))
         words, self._edge_entries = [], []
         for number in range(p.lanes):
-            ram, near = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._index)
-            m.d.comb += ram.write.eq(self._strobe(Region.EDGE, 0, number))
+            ram, near = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._access.index)
+            m.d.comb += ram.write.eq(self._access.strobe(Region.EDGE, 0, number))
             words.append(near)
             self._edge_entries.append(ram.data)
         edges = [unpack(record, word) for word in words]
@@ -197,12 +200,12 @@ class Core(wiring.Component):
         m.submodules.node_fetch = fetch = Fetch(
             index_bits=p.node_row_bits, width=width * p.updates, data_latency=LISTED
         )
-        row, column = p.node_place(self._index)
+        row, column = p.node_place(self._access.index)
         words, self._node_entries = [], []
         for number in range(p.updates):
             ram, near = self._entries(f"node_entries{number}", record, p.node_rows, fetch.address, row)
             word = Map(p).words(Region.NODE).index("entry")
-            m.d.comb += ram.write.eq(self._strobe(Region.NODE, word) & (column == number))
+            m.d.comb += ram.write.eq(self._access.strobe(Region.NODE, word) & (column == number))
             words.append(near)
             self._node_entries.append(ram.data)
         m.d.comb += [
@@ -241,66 +244,6 @@ class Core(wiring.Component):
                     for axis in AXES:
                         total = getattr(lane, f"sum{n}_{end}_{axis}")
                         self._m.d.comb += getattr(updater, f"sum{bank}_{axis}").eq(total)
-
-    def _strobe(self, region, word, lane=None):
-        """A write of the host to such a word, from a register: with `_index` and `_data`."""
-        host = self._host
-        here = host.strobe[region] & (host.word == word)
-        strobe = Signal(name=f"write_{region.name.lower()}_{word}" + ("" if lane is None else f"_{lane}"))
-        self._m.d.sync += strobe.eq(here if lane is None else here & (host.lane == lane))
-        return strobe
-
-    def _host_side(self):
-        m, host, p = self._m, self._host, self.parameters
-        words = Map(p).words(Region.NODE)
-        row, column = p.node_place(self._index)
-
-        def strobes(names, number):
-            return Cat(self._strobe(Region.NODE, words.index(name)) & (column == number) for name in names)
-
-        def chosen(words, index, name, ahead=MEMORY):
-            return choose(m, self._lines, words, index, cycles=CHOICE, name=name, ahead=ahead)
-
-        def then_chosen(words, index, name):
-            return chosen(words, index, name, ahead=MEMORY + CHOICE)
-
-        nodes = []
-        for number, (updater, entry) in enumerate(zip(self.updaters, self._node_entries, strict=True)):
-            m.d.comb += [
-                updater.host.eq(self._idle),
-                updater.host_index.eq(row),
-                updater.host_data.eq(self._data),
-                updater.host_write_state.eq(strobes(NODE_STATE, number)),
-                updater.host_write_load.eq(strobes(NODE_LOAD, number)),
-                updater.host_write_mass.eq(strobes(["inverse_mass"], number)),
-            ]
-            reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
-            reads += [updater.host_mass, entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
-            nodes.append(chosen(reads, host.word, f"node{number}"))
-        m.d.comb += host.node_word.eq(then_chosen(nodes, p.node_place(host.index)[1], "node"))
-
-        edges, materials, tables = [], [], []
-        for number, (port, entry) in enumerate(zip(self._lanes, self._edge_entries, strict=True)):
-            m.d.comb += [
-                port.host.eq(self._idle),
-                port.host_index.eq(self._index),
-                port.host_data.eq(self._data),
-                *(getattr(port, f"host_write_node{n}").eq(strobes(NODE_STATE, n)) for n in range(p.updates)),
-                port.host_write_length.eq(self._strobe(Region.EDGE, 1, number)),
-                port.host_write_ratio.eq(self._strobe(Region.EDGE, 2, number)),
-                port.host_write_table.eq(Cat(self._strobe(Region.TABLE, 0), self._strobe(Region.TABLE, 1))),
-                port.host_field.eq(host.word),
-                *(bit.eq(self._strobe(Region.MATERIAL, k)) for k, bit in enumerate(port.host_write_material)),
-            ]
-            edges.append(chosen([entry, port.host_length, port.host_ratio], host.word, f"edge{number}"))
-            materials.append(port.host_material)
-            half = len(port.host_table) // 2
-            tables.append(chosen([port.host_table[:half], port.host_table[half:]], host.word, f"table{number}"))
-        for name, choices in (("edge", edges), ("material", materials), ("table", tables)):
-            m.d.comb += getattr(host, f"{name}_word").eq(then_chosen(choices, host.lane, name))
-        for name, member in self._host_members.items():
-            inner, outer = getattr(host, name), getattr(self, name)
-            m.d.comb += inner.eq(outer) if member.flow == In else outer.eq(inner)
 
     def _counters(self):
         m, host, sequencer = self._m, self._host, self._sequencer
