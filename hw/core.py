@@ -20,6 +20,7 @@ from .front import Front
 from .host import HANDOVER, HostPort, handed, host_signature
 from .lane import COPIED, NEXT, NODE_WORDS, STAGED, Lane, latency, written
 from .parameters import Parameters
+from .progress import Progress
 from .registers import COUNTERS, Map, Region
 from .sequencer import Sequencer
 from .updater import NodeUpdater
@@ -72,7 +73,7 @@ class Core(wiring.Component):
         m = Module()
         self._m, self._lines, p = m, DelayLines(m), self.parameters
         m.submodules.host = self._host = HostPort(Map(p), len(self.faults))
-        m.submodules.sequencer = self._sequencer = Sequencer(row_bits=p.row_bits, node_bits=p.node_row_bits)
+        m.submodules.sequencer = self._sequencer = Sequencer()
         for number, updater in enumerate(self.updaters):
             m.submodules[f"updater{number}"] = updater
         self._lanes = []
@@ -87,9 +88,16 @@ class Core(wiring.Component):
         self._idle = Signal(init=1)
         m.d.sync += self._idle.eq(~self._sequencer.busy)
         m.d.comb += self.busy.eq(self._sequencer.busy)
-        self._loading = Signal()
-        idle = [self._lines.later(self._idle, cycles, name="idle", reset=True) for cycles in range(HANDOVER + 1)]
-        m.d.comb += self._loading.eq(Cat(idle).any())
+        self._loading = Signal(init=1)  # a run has not begun, or not for long enough
+        idle = [self._lines.later(self._idle, cycles, name="idle", reset=True) for cycles in range(HANDOVER)]
+        m.d.sync += self._loading.eq(Cat(~self._sequencer.busy, *idle).any())
+        done = {"row": "row_summed", "node": "node_updated"}  # the forces may be read, the new state has been written
+        self._done = {entry: Signal(name=name) for entry, name in done.items()}
+        self._done_last = {entry: Signal(name=f"{name}_last") for entry, name in done.items()}
+        m.d.comb += [
+            self._sequencer.row_summed_last.eq(self._done_last["row"]),
+            self._sequencer.node_updated_last.eq(self._done_last["node"]),
+        ]
         self._rows()
         self._nodes()
         self._sums()
@@ -121,10 +129,14 @@ class Core(wiring.Component):
         self._m.d.sync += near.eq(ram.data)
         return ram, near
 
-    def _front(self, name, fetch):
-        """The list's entry in front, and the one behind it: ``word``, ``last``, ``index`` of each."""
+    def _front(self, name, other, fetch, need, first):
+        """The list's entry in front: ``word``, ``last``, ``index``. ``need`` of an entry's word is what waits for the
+        other list's `hw.progress`, which counts from ``first``."""
         m, sequencer, behind = self._m, self._sequencer, Cat(fetch.word, fetch.last, fetch.index)
         m.submodules[f"{name}_front"] = front = Front(width=len(behind))
+        words = len(fetch.word)
+        entry = SimpleNamespace(word=front.entry[:words], last=front.entry[words], index=front.entry[words + 1 :])
+        m.submodules[f"{other}_progress"] = progress = Progress(width=len(need(fetch.word)), first=first)
         for lane in self._lanes:
             m.d.comb += [
                 getattr(lane, f"{name}_behind_valid").eq(fetch.valid),
@@ -141,19 +153,26 @@ class Core(wiring.Component):
             front.ready.eq(getattr(sequencer, f"{name}_ready")),
             getattr(sequencer, f"{name}_valid").eq(front.valid),
             getattr(sequencer, f"{name}_goes").eq(front.goes),
+            getattr(sequencer, f"{name}_last").eq(entry.last),
+            progress.clear.eq(sequencer.start),
+            progress.done.eq(self._done[other]),
+            progress.done_last.eq(self._done_last[other]),
+            progress.front.eq(need(entry.word)),
+            progress.behind.eq(need(fetch.word)),
+            progress.after.eq(need(fetch.next_word)),
+            progress.front_moves.eq(front.moves),
+            progress.behind_moves.eq(fetch.moves),
+            getattr(sequencer, f"{name}_{other}s").eq(progress.front_reached),
+            getattr(sequencer, f"{name}_behind_{other}s").eq(progress.behind_reached),
         ]
-        words = len(fetch.word)
-        done, cycles = {
-            "row": ("row_summed", latency(self.datapath) - 1), "node": ("node_updated", self.updater.latency + COPIED),
-        }[name]
-        for port, value in ((done, front.goes), (f"{done}_last", front.goes & getattr(sequencer, f"{name}_last"))):
-            m.d.comb += getattr(sequencer, port).eq(self._lines.later(value, cycles, name=port, reset=True))
-        entry = SimpleNamespace(word=front.entry[:words], last=front.entry[words], index=front.entry[words + 1 :])
-        return entry, fetch
+        cycles = {"row": latency(self.datapath) - 1, "node": self.updater.latency + COPIED}[name]
+        for done, value in ((self._done, front.goes), (self._done_last, front.goes & entry.last)):
+            m.d.comb += done[name].eq(self._lines.later(value, cycles, name=done[name].name, reset=True))
+        return entry
 
     def _rows(self):
         """A row is an edge for every lane."""
-        m, p, host, sequencer = self._m, self.parameters, self._host, self._sequencer
+        m, p, host = self._m, self.parameters, self._host
         record = records.edge_entry()
         width = records.width(record)
         m.submodules.row_highest = last = highest.Highest(count=2 * p.lanes, width=p.node_row_bits)
@@ -174,23 +193,18 @@ class Core(wiring.Component):
             fetch.count.eq(host.rows),
             fetch.data.eq(Cat(*later, last.highest)),
         ]
-        front, behind = self._front("row", fetch)
+        front = self._front("row", "node", fetch, lambda word: word[width * p.lanes :], 0)
 
         entries = [slice(n * width, (n + 1) * width) for n in range(p.lanes)]
         self._valid = [unpack(record, front.word[entry])["valid"] for entry in entries]
         for lane, entry in zip(self._lanes, entries, strict=True):
             m.d.comb += [
                 lane.flush.eq(self._loading),
-                lane.row_behind.eq(behind.index),
-                lane.edge_behind.eq(behind.word[entry]),
+                lane.row_behind.eq(fetch.index),
+                lane.edge_behind.eq(fetch.word[entry]),
                 *(bit.eq(value) for bit, value in stage_bits(lane, self._row_stage)),
                 lane.velocity_shift.eq(self._velocity_shift),
             ]
-        m.d.comb += [
-            sequencer.row_last.eq(front.last),
-            sequencer.row_nodes.eq(front.word[width * p.lanes :] < sequencer.updated),
-            sequencer.row_behind_nodes.eq(behind.word[width * p.lanes :] < sequencer.updated),
-        ]
 
     def _nodes(self):
         """A row of nodes is a node for every updater."""
@@ -212,7 +226,8 @@ class Core(wiring.Component):
             fetch.count.eq((host.nodes + (p.updates - 1)) >> p.updates.bit_length() - 1),
             fetch.data.eq(Cat(*words)),
         ]
-        front, behind = self._front("node", fetch)
+        # A node needs as many rows, a row the node of that number
+        front = self._front("node", "row", fetch, lambda word: unpack(record, word)["need"][: p.row_bits + 1], 1)
         for number, updater in enumerate(self.updaters):
             entry = unpack(record, front.word[number * width : (number + 1) * width])
             m.d.comb += [
@@ -222,14 +237,9 @@ class Core(wiring.Component):
                 updater.velocity_shift.eq(self._velocity_shift),
                 *(bit.eq(value) for bit, value in stage_bits(updater, sequencer.node_stage)),
             ]
-        m.d.comb += [
-            sequencer.node_last.eq(front.last),
-            sequencer.node_need.eq(unpack(record, front.word)["need"]),
-            sequencer.node_behind_last.eq(behind.last),
-            sequencer.node_behind_need.eq(unpack(record, behind.word)["need"]),
-        ]
+        m.d.comb += sequencer.node_behind_last.eq(fetch.last)
         for lane in self._lanes:
-            m.d.comb += [lane.node_behind.eq(behind.index), lane.update_row.eq(self.updater.update_row)]
+            m.d.comb += [lane.node_behind.eq(fetch.index), lane.update_row.eq(self.updater.update_row)]
             for number, updater in enumerate(self.updaters):
                 m.d.comb += getattr(lane, f"update{number}").eq(updater.update)
                 for word in NODE_WORDS:

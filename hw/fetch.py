@@ -36,6 +36,8 @@ class Fetch(wiring.Component):
         There is an entry; it is taken.
     index, last, word : Out
         The entry: its place, whether it is the list's last, and what the memory holds there.
+    moves : Out(1), next_word : Out
+        ``word`` is ``next_word`` in the next cycle, if there is an entry then.
     """
 
     def __init__(self, *, index_bits: int, width: int, data_latency: int = READ_LATENCY):
@@ -52,6 +54,8 @@ class Fetch(wiring.Component):
                 "index": Out(index_bits),
                 "last": Out(1),
                 "word": Out(width),
+                "moves": Out(1),
+                "next_word": Out(width),
             }
         )
 
@@ -88,5 +92,7 @@ class Fetch(wiring.Component):
             self.valid.eq(queue.valid),
             entry.eq(queue.data),
             queue.take.eq(self.take),
+            self.moves.eq(queue.moves),
+            self.next_word.eq(queue.next_data),
         ]
         return m

@@ -12,7 +12,8 @@ class Front(wiring.Component):
     """A register between a `hw.fetch.Fetch` and what its entries start.
 
     What makes an entry ready is compared while it still stands behind the front, or again in every cycle in which it
-    stands there: that it ``goes`` is in a register, a cycle after the reason, and an entry may go in every cycle.
+    stands there: that it ``goes`` is in a register, a cycle after the reason, and an entry may go in every cycle. So is
+    that there is room in front, which all of the entry's registers wait for.
 
     Members
     -------
@@ -21,6 +22,8 @@ class Front(wiring.Component):
         The next entry, if there is one; whether it is ready; it moves to the front.
     entry, valid, goes : Out
         The entry in front, if there is one; it goes in this cycle.
+    moves : Out(1)
+        There is none in front in the next cycle but the one behind.
     ready : In(1)
         The entry in front is ready.
     """
@@ -37,22 +40,23 @@ class Front(wiring.Component):
                 "entry": Out(width),
                 "valid": Out(1),
                 "goes": Out(1),
+                "moves": Out(1, init=1),
                 "ready": In(1),
             }
         )
 
     def elaborate(self, platform):
         m = Module()
-        moves = ~self.valid | self.goes
-        m.d.comb += self.behind_take.eq(moves & self.behind_valid)
-        with m.If(moves):
+        m.d.comb += self.behind_take.eq(self.moves & self.behind_valid)
+        with m.If(self.moves):
             m.d.sync += [
                 self.entry.eq(self.behind),
                 self.valid.eq(self.behind_valid),
                 self.goes.eq(self.behind_valid & self.behind_ready),
+                self.moves.eq(~self.behind_valid | self.behind_ready),
             ]
-        with m.Elif(self.ready):
-            m.d.sync += self.goes.eq(1)
+        with m.Else():
+            m.d.sync += [self.goes.eq(self.ready), self.moves.eq(self.ready)]
         with m.If(self.flush):
-            m.d.sync += [self.valid.eq(0), self.goes.eq(0)]
+            m.d.sync += [self.valid.eq(0), self.goes.eq(0), self.moves.eq(1)]
         return m

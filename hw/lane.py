@@ -142,7 +142,9 @@ class Lane(wiring.Component):
             by_host = {"write": "write_table", "address": "index", "read": ""}.get(name, name)
             m.d.sync += getattr(edge, f"table_{name}").eq(self._host(by_host, HANDOVER - 1))
         m.d.comb += self.host_table.eq(edge.table_word)
-        m.d.sync += self.fault.eq(Mux(self._reset, 0, edge.fault))
+        fault = Signal.like(self.fault, reset_less=True)  # a reset comes by way of `_reset`
+        m.d.sync += fault.eq(Mux(self._reset, 0, edge.fault))
+        m.d.comb += self.fault.eq(fault)
         self._lines.build()
         return m
 

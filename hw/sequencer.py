@@ -15,7 +15,8 @@ class Sequencer(wiring.Component):
     A row of a stage may go when its nodes have been updated in the stage before; a node may go when all its edges have
     been summed in its own stage. Rows and nodes go in the order of their lists, stage after stage, so that two counters
     are all the synchronisation there is. A node's update needs only rows of its own stage, and a row only updates of
-    the stage before: any order of the lists comes to its end.
+    the stage before: any order of the lists comes to its end. How far each of them has come in its stage is counted
+    outside (`hw.progress`); here it is known which stage that is.
 
     Members
     -------
@@ -26,30 +27,29 @@ class Sequencer(wiring.Component):
     busy : Out(1), steps_done : Out
         The steps are counted a cycle late.
     row_valid, row_goes, row_last, row_nodes : In(1)
-        A row stands in front (`hw.front.Front`); it goes in this cycle; it is its list's last; all its nodes are among
-        the first ``updated`` of the list.
+        A row stands in front (`hw.front.Front`); it goes in this cycle; it is its list's last; all its nodes have been
+        updated in the stage that the updates are in.
     row_behind_nodes : In(1)
         The same of the row behind the front.
     row_ready, row_behind_ready : Out(1)
         The row in front is ready to go in the next cycle; the one behind would be, if the one in front went now.
     row_stage : Out
         Of the row in front.
-    node_valid, node_goes, node_last : In(1), node_need : In
-        A node stands in front; it goes in this cycle; it is its list's last; so many rows have to be summed before it.
-    node_behind_last : In(1), node_behind_need : In, node_ready, node_behind_ready : Out(1)
+    node_valid, node_goes, node_last, node_rows : In(1)
+        A node stands in front; it goes in this cycle; it is its list's last; all its rows have been summed in the stage
+        that the sums are in.
+    node_behind_last, node_behind_rows : In(1), node_ready, node_behind_ready : Out(1)
     node_stage : Out
-    row_summed, node_updated : In(1)
-        A row's forces may be read; a node's new state has been written.
-    row_summed_last, node_updated_last : In(1)
-        The same of a list's last.
-    updated : Out
-        Nodes updated in the stage before the front row's, as far as that one is not finished.
+    row_summed_last : In(1)
+        The forces of a list's last row may be read.
+    node_updated_last : In(1)
+        The new state of a list's last node has been written.
     node_waits, list_waits, end_waits : Out(1)
         Why no row goes in this cycle of the run: the one in front waits for its nodes, there is none yet, or the last
         has gone.
     """
 
-    def __init__(self, *, row_bits: int, node_bits: int, step_bits: int = 32):
+    def __init__(self, *, step_bits: int = 32):
         super().__init__(
             {
                 "start": In(1),
@@ -71,17 +71,14 @@ class Sequencer(wiring.Component):
                 "node_valid": In(1),
                 "node_goes": In(1),
                 "node_last": In(1),
-                "node_need": In(row_bits + 1),
+                "node_rows": In(1),
                 "node_behind_last": In(1),
-                "node_behind_need": In(row_bits + 1),
+                "node_behind_rows": In(1),
                 "node_ready": Out(1),
                 "node_behind_ready": Out(1),
                 "node_stage": Out(STAGE_BITS),
-                "row_summed": In(1),
                 "row_summed_last": In(1),
-                "node_updated": In(1),
                 "node_updated_last": In(1),
-                "updated": Out(node_bits + 1),
             }
         )
 
@@ -93,7 +90,6 @@ class Sequencer(wiring.Component):
         last_step = {name: Signal(name=f"{name}_last_step", reset_less=True) for name in ("row", "node", "update")}
         row_lead = Signal(2, reset_less=True)  # stages that the front row is ahead of the updates
         sum_lead = Signal(2, reset_less=True)  # stages that the sums are ahead of the front node
-        summed = Signal.like(self.node_need, name="summed", reset_less=True)
         row_stage, node_stage, update_stage = stages = [
             Signal(STAGE_BITS, name=f"stage_of_{name}", reset_less=True) for name in ("rows", "nodes", "updates")
         ]
@@ -104,11 +100,11 @@ class Sequencer(wiring.Component):
         rows_end = rows_over | row_turns & (row_stage == last_stage) & last_step["row"]
         nodes_end = nodes_over | node_turns & (node_stage == last_stage) & last_step["node"]
         far = (row_lead == 1) & ~row_turns | (row_lead == 0) & row_turns
-        near = (summed >= self.node_behind_need) & ~self.node_behind_last
+        near = self.node_behind_rows & ~self.node_behind_last
         m.d.comb += [
             self.row_ready.eq(~rows_over & ((row_lead == 0) | (row_lead == 1) & self.row_nodes)),
             self.row_behind_ready.eq(~rows_end & ((row_lead == 0) & ~row_turns | far & self.row_behind_nodes)),
-            self.node_ready.eq(~nodes_over & ((sum_lead != 0) | (summed >= self.node_need) & ~self.node_last)),
+            self.node_ready.eq(~nodes_over & ((sum_lead != 0) | self.node_rows & ~self.node_last)),
             self.node_behind_ready.eq(~nodes_end & ((sum_lead > node_turns) | (sum_lead == node_turns) & near)),
             self.node_waits.eq(self.busy & ~rows_over & self.row_valid & ~self.row_goes),
             self.list_waits.eq(self.busy & ~rows_over & ~self.row_valid),
@@ -126,15 +122,6 @@ class Sequencer(wiring.Component):
             row_lead.eq(row_lead + row_stage_done - update_stage_done),
             sum_lead.eq(sum_lead + sum_stage_done - node_stage_done),
         ]
-        with m.If(self.row_summed):
-            m.d.sync += summed.eq(summed + 1)
-            with m.If(sum_stage_done):
-                m.d.sync += summed.eq(0)
-        with m.If(self.node_updated):
-            m.d.sync += self.updated.eq(self.updated + 1)
-            with m.If(update_stage_done):
-                m.d.sync += self.updated.eq(0)
-
         # While the updates are in a step's first stage, rows and nodes are in the same step, none of them near its end
         stopping, stops = Signal(), Signal()
         m.d.comb += stops.eq(stopping & (update_stage == 0))
@@ -166,8 +153,6 @@ class Sequencer(wiring.Component):
                 m.d.sync += {"row": rows_over.eq(1), "node": nodes_over.eq(1), "update": self.busy.eq(0)}[name]
 
         with m.If(self.start):
-            m.d.sync += [signal.eq(0) for signal in (*stages, row_lead, sum_lead, summed, rows_over, nodes_over)]
-            m.d.sync += self.updated.eq(0)
-            m.d.sync += stopping.eq(0)
-            m.d.sync += [self.busy.eq(1), self.steps_done.eq(0)]
+            m.d.sync += [signal.eq(0) for signal in (*stages, row_lead, sum_lead, rows_over, nodes_over)]
+            m.d.sync += [stopping.eq(0), self.busy.eq(1), self.steps_done.eq(0)]
         return m
