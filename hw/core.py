@@ -23,7 +23,7 @@ from .parameters import Parameters
 from .progress import Progress
 from .registers import COUNTERS, Map, Region
 from .sequencer import Sequencer
-from .updater import NodeUpdater
+from .updater import NodeDatapath, NodeUpdater
 
 LISTED = 1 + READ_LATENCY + 1
 """Cycles from a list's address to its entry: a register behind the choice between the host and the `hw.fetch`, another
@@ -33,6 +33,11 @@ behind the memory, whose place is given."""
 def row_latency(parameters: Parameters) -> int:
     """Cycles from a row's address to its edges and the highest of their nodes."""
     return LISTED + highest.latency(2 * parameters.lanes)
+
+
+def datapaths(p: Parameters) -> tuple[EdgeDatapath, NodeDatapath]:
+    """Of an edge and of a node."""
+    return EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
 
 
 class Core(wiring.Component):
@@ -52,10 +57,8 @@ class Core(wiring.Component):
 
     def __init__(self, parameters: Parameters, lane=Lane):
         self.parameters, self._make_lane = parameters, lane
-        self.datapath = EdgeDatapath(parameters.formats, parameters.tables, parameters.cost)
-        self.updaters = [NodeUpdater(parameters) for _ in range(parameters.updates)]
-        self.updater = self.updaters[0]
-        self.faults = sorted({*self.datapath.faults, *self.updater.faults})
+        self.datapath, self.node_datapath = datapaths(parameters)
+        self.faults = sorted({*self.datapath.faults, *self.node_datapath.faults})
         self._check()
         state = parameters.formats.state
         self._host_members = host_signature(state)
@@ -64,7 +67,7 @@ class Core(wiring.Component):
     def _check(self):
         """An edge's own words must be back before its nodes are: then it may come again, or the run is over."""
         datapath = self.datapath
-        loop = latency(datapath) + self.updater.latency + COPIED
+        loop = latency(datapath) + self.node_datapath.latency + COPIED
         for word, output in NEXT.items():
             if (cycles := written(datapath, output)) > loop:
                 raise ValueError(f"the edge's {word} must be written within {loop} cycles, not after {cycles}")
@@ -74,8 +77,10 @@ class Core(wiring.Component):
         self._m, self._lines, p = m, DelayLines(m), self.parameters
         m.submodules.host = self._host = HostPort(Map(p), len(self.faults))
         m.submodules.sequencer = self._sequencer = Sequencer()
-        for number, updater in enumerate(self.updaters):
-            m.submodules[f"updater{number}"] = updater
+        self._updaters = []
+        for number in range(p.updates):
+            m.submodules[f"updater{number}"] = updater = NodeUpdater(p, self.node_datapath)
+            self._updaters.append(updater)
         self._lanes = []
         for number in range(p.lanes):
             m.submodules[f"lane{number}"] = lane = self._make_lane(p, self.datapath)
@@ -101,7 +106,7 @@ class Core(wiring.Component):
         self._rows()
         self._nodes()
         self._sums()
-        self._access.to_nodes(self.updaters, self._node_entries, self._idle)
+        self._access.to_nodes(self._updaters, self._node_entries, self._idle)
         self._access.to_lanes(self._lanes, self._edge_entries, self._idle)
         for name, member in self._host_members.items():
             inner, outer = getattr(self._host, name), getattr(self, name)
@@ -110,7 +115,7 @@ class Core(wiring.Component):
 
         fault = Signal(len(self.faults))
         sources = [(self.datapath.faults, lane.fault) for lane in self._lanes]
-        sources += [(updater.faults, updater.fault) for updater in self.updaters]
+        sources += [(self.node_datapath.faults, updater.fault) for updater in self._updaters]
         for number, name in enumerate(self.faults):
             bits = [bit[names.index(name)] for names, bit in sources if name in names]
             m.d.sync += fault[number].eq(Cat(*bits).any())
@@ -165,7 +170,7 @@ class Core(wiring.Component):
             getattr(sequencer, f"{name}_{other}s").eq(progress.front_reached),
             getattr(sequencer, f"{name}_behind_{other}s").eq(progress.behind_reached),
         ]
-        cycles = {"row": latency(self.datapath) - 1, "node": self.updater.latency + COPIED}[name]
+        cycles = {"row": latency(self.datapath) - 1, "node": self.node_datapath.latency + COPIED}[name]
         for done, value in ((self._done, front.goes), (self._done_last, front.goes & entry.last)):
             m.d.comb += done[name].eq(self._lines.later(value, cycles, name=done[name].name, reset=True))
         return entry
@@ -228,7 +233,7 @@ class Core(wiring.Component):
         ]
         # A node needs as many rows, a row the node of that number
         front = self._front("node", "row", fetch, lambda word: unpack(record, word)["need"][: p.row_bits + 1], 1)
-        for number, updater in enumerate(self.updaters):
+        for number, updater in enumerate(self._updaters):
             entry = unpack(record, front.word[number * width : (number + 1) * width])
             m.d.comb += [
                 updater.valid.eq(sequencer.node_goes & entry["valid"]),
@@ -239,8 +244,8 @@ class Core(wiring.Component):
             ]
         m.d.comb += sequencer.node_behind_last.eq(fetch.last)
         for lane in self._lanes:
-            m.d.comb += [lane.node_behind.eq(fetch.index), lane.update_row.eq(self.updater.update_row)]
-            for number, updater in enumerate(self.updaters):
+            m.d.comb += [lane.node_behind.eq(fetch.index), lane.update_row.eq(self._updaters[0].update_row)]
+            for number, updater in enumerate(self._updaters):
                 m.d.comb += getattr(lane, f"update{number}").eq(updater.update)
                 for word in NODE_WORDS:
                     m.d.comb += getattr(lane, f"update{number}_{word}").eq(getattr(updater, f"update_{word}"))
@@ -250,7 +255,7 @@ class Core(wiring.Component):
         for number, lane in enumerate(self._lanes):
             for half, end in enumerate("ij"):
                 bank = half * self.parameters.lanes + number
-                for n, updater in enumerate(self.updaters):
+                for n, updater in enumerate(self._updaters):
                     for axis in AXES:
                         total = getattr(lane, f"sum{n}_{end}_{axis}")
                         self._m.d.comb += getattr(updater, f"sum{bank}_{axis}").eq(total)

@@ -4,7 +4,6 @@ import re
 
 from golden import formats
 
-from .core import Core
 from .latency import latencies
 from .parameters import Parameters
 from .registers import CONTROL_TEXT, Control, Map, Region
@@ -17,7 +16,7 @@ def format_table(parameters: Parameters) -> str:
 
 def latency_table(parameters: Parameters) -> str:
     lines = ["| of | from, to | cycles |", "|---|---|---|"]
-    rows = latencies(Core(parameters))
+    rows = latencies(parameters)
     return "\n".join(lines + [f"| {of} | {what} | {cycles} |" for of, what, cycles in rows])
 
 

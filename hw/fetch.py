@@ -10,7 +10,7 @@ from .blocks.queue import Queue
 
 def latency(data_latency: int) -> int:
     """Cycles from the end of the flush to the first entry."""
-    return data_latency + 1
+    return data_latency + 2
 
 
 class Fetch(wiring.Component):
@@ -64,6 +64,11 @@ class Fetch(wiring.Component):
         depth = 1 << (self._data_latency + 3).bit_length()  # enough for an entry a cycle
         entry = Cat(self.word, self.last, self.index)
         m.submodules.queue = queue = Queue(width=len(entry), depth=depth)
+        m.d.comb += self.moves.eq(~self.valid | self.take)
+        with m.If(self.moves):
+            m.d.sync += [entry.eq(queue.data), self.valid.eq(queue.valid)]
+        with m.If(self.flush):
+            m.d.sync += self.valid.eq(0)
         under_way = Signal(range(depth + 1))  # entries asked for and not yet taken, as known a cycle later
         taken = Signal()
         ask = Signal()
@@ -89,10 +94,7 @@ class Fetch(wiring.Component):
             queue.flush.eq(self.flush),
             queue.put.eq(arrived),
             queue.data_in.eq(Cat(self.data, tag)),
-            self.valid.eq(queue.valid),
-            entry.eq(queue.data),
-            queue.take.eq(self.take),
-            self.moves.eq(queue.moves),
-            self.next_word.eq(queue.next_data),
+            queue.take.eq(self.moves & queue.valid),
+            self.next_word.eq(queue.data[: len(self.word)]),
         ]
         return m

@@ -4,15 +4,13 @@ from dataclasses import dataclass
 
 from . import fetch
 from .blocks.memory import READ_LATENCY
-from .core import LISTED, Core, row_latency
-from .edge import EdgeDatapath
+from .core import LISTED, datapaths, row_latency
 from .front import LATENCY as FRONT_LATENCY
 from .host import HANDOVER
 from .host import LATENCY as HOST_LATENCY
 from .lane import COPIED, FETCHED, NEXT, written
 from .lane import latency as sums_latency
 from .parameters import Parameters
-from .updater import NodeDatapath
 
 
 @dataclass(frozen=True)
@@ -27,14 +25,14 @@ class Latencies:
 
     @classmethod
     def of(cls, p: Parameters) -> "Latencies":
-        edge, node = EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
+        edge, node = datapaths(p)
         rows, nodes = (HANDOVER + fetch.latency(data) + FRONT_LATENCY + 1 for data in (row_latency(p), LISTED))
         return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + COPIED + 1 + FRONT_LATENCY, rows, nodes)
 
 
-def latencies(core: Core) -> list[tuple[str, str, int]]:
+def latencies(p: Parameters) -> list[tuple[str, str, int]]:
     """(of what, from where to where, cycles), each read from the component that has it."""
-    edge, node, loop = core.datapath, core.updater, Latencies.of(core.parameters)
+    (edge, node), loop = datapaths(p), Latencies.of(p)
     last = max(written(edge, name) for name in NEXT.values())
     return [
         ("block RAM", "address to word", READ_LATENCY),

@@ -58,10 +58,10 @@ def manifest(core: Core, verilog: str, key: str) -> dict:
         ],
         "faults": [{"bit": bit, "name": name} for bit, name in enumerate(core.faults)],
         "formats": [{"name": q.name, **_format(q), "unit": q.unit} for q in fmt.all()],
-        "latencies": [{"of": of, "from_to": what, "cycles": cycles} for of, what, cycles in latencies(core)],
+        "latencies": [{"of": of, "from_to": what, "cycles": cycles} for of, what, cycles in latencies(core.parameters)],
         "pipelines": {
             "edge": _pipeline(core.datapath.schedule),
-            "node": _pipeline(core.updater.schedule),
+            "node": _pipeline(core.node_datapath.schedule),
         },
     }
     return contents | {"sha256": own_digest(contents)}

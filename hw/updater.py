@@ -70,7 +70,8 @@ class NodeDatapath:
 class NodeUpdater(wiring.Component):
     """`golden.node.node` as a pipeline, with the memories of the nodes' own words: of one node in each row of nodes.
 
-    Latency: a node's new state is on ``update_*`` ``latency`` cycles after it was issued. Throughput one node a cycle.
+    Latency: a node's new state is on ``update_*`` ``datapath.latency`` cycles after it was issued. Throughput one node
+    a cycle.
 
     Members
     -------
@@ -85,18 +86,15 @@ class NodeUpdater(wiring.Component):
     update, update_row, update_x_*, update_v_* : Out
         As `hw.lane.Lane` takes them.
     fault : Out
-        One bit for each name in ``faults``.
+        One bit for each name in ``datapath.faults``.
     host_* : In / Out
         Reads and writes of the host, only while no node is under way; see `hw.host`. They are `HANDOVER` cycles on
         their way to the memories.
     """
 
-    def __init__(self, parameters: Parameters):
-        self.parameters = parameters
-        fmt = parameters.formats
-        self.datapath = datapath = NodeDatapath(fmt, parameters.lanes, parameters.cost)
-        self.banks, self.schedule = datapath.banks, datapath.schedule
-        self.faults, self.latency = datapath.faults, datapath.latency
+    def __init__(self, parameters: Parameters, datapath: NodeDatapath):
+        self.parameters, self.datapath = parameters, datapath
+        self.banks, self.schedule, fmt = datapath.banks, datapath.schedule, parameters.formats
         self._mass = records.inverse_mass(fmt)
         update = {"x": fmt.position, "v": fmt.velocity}
         super().__init__(
@@ -110,7 +108,7 @@ class NodeUpdater(wiring.Component):
                 "update": Out(1),
                 "update_row": Out(parameters.node_row_bits),
                 **{f"update_{word}": Out(shape(update[word[0]])) for word in NODE_WORDS},
-                "fault": Out(len(self.faults)),
+                "fault": Out(len(self.datapath.faults)),
                 "host": In(1),
                 "host_index": In(parameters.index_bits),
                 "host_data": In(fmt.state),
@@ -142,7 +140,7 @@ class NodeUpdater(wiring.Component):
         memories = self._memories(inputs)
         pipe = Pipe(m, self.schedule, inputs, self._later(self.valid, 0))
         self._write_back(pipe, memories)
-        m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.faults))
+        m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.datapath.faults))
         pipe.build()
         self._lines.build()
         return m

@@ -119,6 +119,5 @@ def refused(make, message: str):
 def core_to_ask(parameters) -> Core:
     """A circuit that is only asked, never built, and not missed by Amaranth for that."""
     core = Core(parameters)
-    for component in (core, core.updater):
-        component._MustUse__used = True
+    core._MustUse__used = True
     return core

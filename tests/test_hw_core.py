@@ -126,7 +126,7 @@ def test_a_pressed_block(lanes, updates, press, hold, rng):
         await host.assert_same(ctx, program, machine)
         refusals, cycles = await host.registers(ctx, Control.REFUSED, Control.CYCLES)
         assert refusals == 2
-        assert 4 * latency(core.datapath) < cycles < 4 * (latency(core.datapath) + core.updater.latency + 40)
+        assert 4 * latency(core.datapath) < cycles < 4 * (latency(core.datapath) + core.node_datapath.latency + 40)
 
     simulate(core, bench)
 

@@ -4,7 +4,7 @@ import pytest
 from hw_objects import simulate
 
 from hw.blocks.memory import READ_LATENCY
-from hw.fetch import Fetch
+from hw.fetch import Fetch, latency
 
 BITS = 6
 
@@ -26,9 +26,10 @@ class Memory:
 
 def take_all(dut, count, cycles, wanted):
     """(entries taken as (index, last, word), cycles in which there was none). ``wanted(cycle)``: one would be taken."""
-    taken, missing, memory = [], [], Memory(dut)
+    taken, missing, memory, expected = [], [], Memory(dut), None
 
     async def bench(ctx):
+        nonlocal expected
         ctx.set(dut.count, count)
         ctx.set(dut.flush, 1)
         for _ in range(3):
@@ -38,9 +39,12 @@ def take_all(dut, count, cycles, wanted):
         ctx.set(dut.flush, 0)
         for cycle in range(cycles):
             memory.step(ctx)
-            valid = ctx.get(dut.valid)
+            valid, found = ctx.get(dut.valid), ctx.get(dut.word)
+            assert not valid or found == expected, "it is not what was announced"
             take = bool(valid and wanted(cycle))
             ctx.set(dut.take, take)
+            assert ctx.get(dut.moves) == (take or not valid)
+            expected = ctx.get(dut.next_word) if ctx.get(dut.moves) else found
             if take:
                 taken.append((ctx.get(dut.index), ctx.get(dut.last), ctx.get(dut.word)))
             if not valid:
@@ -58,7 +62,7 @@ def entries(count, number):
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 8, 9, 1 << BITS])
 def test_one_a_cycle_once_it_is_under_way(count):
     taken, missing = take_all(Fetch(index_bits=BITS, width=8), count, 200, lambda cycle: True)
-    assert missing == list(range(READ_LATENCY + 1))
+    assert missing == list(range(latency(READ_LATENCY)))
     assert taken == entries(count, 200 - len(missing))
 
 
@@ -66,13 +70,13 @@ def test_one_a_cycle_once_it_is_under_way(count):
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
 def test_however_it_is_taken(count, share, rng):
     taken, missing = take_all(Fetch(index_bits=BITS, width=8), count, 600, lambda cycle: rng.random() < share)
-    assert missing == list(range(READ_LATENCY + 1))  # never short of entries again
+    assert missing == list(range(latency(READ_LATENCY)))  # never short of entries again
     assert taken == entries(count, len(taken)) and len(taken) > 30
 
 
 def test_bursts_after_a_long_wait():
     taken, missing = take_all(Fetch(index_bits=BITS, width=8), 40, 400, lambda cycle: cycle % 50 > 20)
-    assert missing == list(range(READ_LATENCY + 1))
+    assert missing == list(range(latency(READ_LATENCY)))
     assert taken == entries(40, len(taken))
 
 

@@ -135,8 +135,8 @@ def test_latencies(contents, core):
     assert cycles["host port", "request to answer"] == LATENCY
     assert cycles["block RAM", "address to word"] == READ_LATENCY
     assert cycles["edge", "issue to the sums that contain its force"] == latency(core.datapath)
-    assert cycles["node", "issue to its new state in the lanes' memories"] == core.updater.latency + COPIED
-    for name, schedule in (("edge", core.datapath.schedule), ("node", core.updater.schedule)):
+    assert cycles["node", "issue to its new state in the lanes' memories"] == core.node_datapath.latency + COPIED
+    for name, schedule in (("edge", core.datapath.schedule), ("node", core.node_datapath.schedule)):
         pipeline = contents["pipelines"][name]
         assert pipeline["cycles"] == schedule.latency == max(item["to"] for item in pipeline["operations"])
         assert pipeline["arrival"] == schedule.arrival

@@ -15,6 +15,7 @@ from golden.qformat import BIT
 from golden.rk4 import RK4
 from hw.accumulator import READ
 from hw.blocks.memory import READ_LATENCY
+from hw.core import datapaths
 from hw.host import HANDOVER
 from hw.lane import NODE_WORDS
 from hw.parameters import Parameters
@@ -96,8 +97,8 @@ class Bench:
         issued = dict(zip((np.cumsum(gaps) + np.arange(NODES)).tolist(), self.order.tolist(), strict=True))
         for bit, value in RK4.stage(number).items():
             ctx.set(getattr(dut, f"stage_{bit}"), value)
-        for cycle in range(max(issued) + dut.latency + 2):
-            node, summed, done = issued.get(cycle), issued.get(cycle - READ), issued.get(cycle - dut.latency)
+        for cycle in range(max(issued) + dut.datapath.latency + 2):
+            node, summed, done = issued.get(cycle), issued.get(cycle - READ), issued.get(cycle - dut.datapath.latency)
             ctx.set(dut.valid, node is not None)
             if node is not None:
                 ctx.set(dut.row, node)
@@ -113,7 +114,7 @@ class Bench:
                     expected = self.nodes.x if word[0] == "x" else self.nodes.vectors["v"]
                     assert ctx.get(getattr(dut, f"update_{word}")) == expected[done, AXES.index(word[2])], word
             bits = ctx.get(dut.fault)
-            self.faults |= {name for bit, name in enumerate(dut.faults) if bits >> bit & 1}
+            self.faults |= {name for bit, name in enumerate(dut.datapath.faults) if bits >> bit & 1}
             await ctx.tick()
 
     async def read(self, ctx, port):
@@ -128,10 +129,14 @@ class Bench:
         return seen[HANDOVER + READ_LATENCY :]
 
 
+def updater(parameters):
+    return NodeUpdater(parameters, datapaths(parameters)[1])
+
+
 @pytest.mark.parametrize(("lanes", "order", "widest_gap"), [(1, "up", 0), (2, "any", 2)])
 def test_whole_steps(lanes, order, widest_gap, rng):
     parameters = Parameters(lanes=lanes, nodes=NODES, edges=8, materials=2, tables=1)
-    dut, nodes = NodeUpdater(parameters), Nodes(parameters.formats, rng, 2 * lanes)
+    dut, nodes = updater(parameters), Nodes(parameters.formats, rng, 2 * lanes)
     assert dut.banks == nodes.banks
     orders = {"up": np.arange(NODES), "any": rng.permutation(NODES)}
     run = Bench(dut, nodes, rng, orders[order], widest_gap)
@@ -158,7 +163,7 @@ def test_whole_steps(lanes, order, widest_gap, rng):
 def test_a_word_the_host_writes_is_where_the_next_step_starts(rng):
     """Positions and velocities between two steps: both the start and the value of the first stage."""
     parameters = Parameters(lanes=1, nodes=NODES, edges=8, materials=2, tables=1)
-    dut, nodes = NodeUpdater(parameters), Nodes(parameters.formats, rng, 2)
+    dut, nodes = updater(parameters), Nodes(parameters.formats, rng, 2)
     run = Bench(dut, nodes, rng, np.arange(NODES), 1)
 
     async def bench(ctx):

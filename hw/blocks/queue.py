@@ -20,8 +20,6 @@ class Queue(wiring.Component):
     put : In(1), data_in : In
     valid : Out(1), take : In(1), data : Out
         There is a word, it is taken. ``take`` only while ``valid``.
-    moves : Out(1), next_data : Out
-        ``data`` is ``next_data`` in the next cycle, if there is a word then.
 
     Raises
     ------
@@ -42,8 +40,6 @@ class Queue(wiring.Component):
                 "valid": Out(1),
                 "take": In(1),
                 "data": Out(width),
-                "moves": Out(1),
-                "next_data": Out(width),
             }
         )
 
@@ -54,20 +50,19 @@ class Queue(wiring.Component):
         places = [Signal(range(self.depth), name=name) for name in ("next_in", "next_out")]
         # A word stands in front of the memory, in a register: the memory is never full. Whether words wait in it is
         # known from a register too: all of the word in front hangs on it
-        waiting, passes = Signal(), Signal()
+        moves, waiting, passes = Signal(), Signal(), Signal()
         store, fetch, single = Signal(), Signal(), Signal()
         m.d.comb += [
-            self.moves.eq(~self.valid | self.take),
-            self.next_data.eq(Mux(waiting, read.data, self.data_in)),
+            moves.eq(~self.valid | self.take),
             single.eq(places[0] == (places[1] + 1)[: len(places[1])]),
-            passes.eq(self.moves & ~waiting),
+            passes.eq(moves & ~waiting),
             store.eq(self.put & ~passes),
-            fetch.eq(self.moves & waiting),
+            fetch.eq(moves & waiting),
             write.en.eq(store),
             write.data.eq(self.data_in),
         ]
-        with m.If(self.moves):
-            m.d.sync += [self.data.eq(self.next_data), self.valid.eq(waiting | self.put)]
+        with m.If(moves):
+            m.d.sync += [self.data.eq(Mux(waiting, read.data, self.data_in)), self.valid.eq(waiting | self.put)]
         m.d.sync += waiting.eq(store | waiting & ~(fetch & single))
         for port, place, steps in ((write, places[0], store), (read, places[1], fetch)):
             m.d.comb += port.addr.eq(place)
