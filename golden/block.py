@@ -39,7 +39,7 @@ def magnitude(x, operand: int):
 
 
 def cut(x, fmt):
-    """``x``, not negative and in the range of ``fmt``, without what is below its last place: no carry is awaited."""
+    """``x``, in the range of ``fmt``, without what is below its last place: no carry is awaited."""
     return x.field(x.fmt.frac_bits - fmt.frac_bits, fmt)
 
 
@@ -48,8 +48,11 @@ def difference(a, b):
     return [p - q for p, q in zip(a, b, strict=True)]
 
 
-def dot(a, b):
-    return a[0].total([p * q for p, q in zip(a, b, strict=True)])
+def dot(a, b, frac_bits: int):
+    """``a . b``, of products that are cut after so many fraction bits: less has to be added."""
+    products = [p * q for p, q in zip(a, b, strict=True)]
+    fmt = products[0].fmt
+    return a[0].total([cut(product, Q(fmt.int_bits, frac_bits, fmt.signed)) for product in products])
 
 
 def clamp(x, low, high):

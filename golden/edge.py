@@ -40,7 +40,7 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
 
     # ldot = u . w with w = vj - vi
     w, w_shift = normalise([c.scale(-1) for c in difference(j.v, i.v)], fmt.operand)
-    rate = dot(u, w).to(fmt.rate).scale(1)
+    rate = dot(u, w, fmt.dot_frac_bits).to(fmt.rate).scale(1)
 
     # g = k (a l - L) + c1 ldot
     share = state.ratio.to(fmt.share)
@@ -85,7 +85,7 @@ def axis_of(fmt, tables, xi, xj):
     sizes."""
     span = fmt.position.int_bits
     d, d_shift = normalise([c.scale(-span) for c in difference(xj, xi)], fmt.operand)
-    squared = dot(d, d)
+    squared = dot(d, d, fmt.dot_frac_bits)
     short = squared < 1
     silent = fmt.square.nameless  # the one that is not taken may saturate, the other one only by its last place
     square = short.select(squared.scale(2).to(silent), squared.to(silent))

@@ -118,6 +118,11 @@ class Formats:
     def share(self):
         return self._unsigned(1, "share", "1")
 
+    @property
+    def dot_frac_bits(self):
+        """Of the products in a scalar product: what is cut from them is below 1/16 of a place of what it is made."""
+        return self.operand + 4
+
     # Small integers
     exponent = Q(8, 0, name="exponent", unit="log2")
 

@@ -93,7 +93,8 @@ class QArray:
 
     def field(self, low: int, fmt: Q):
         """Bits ``low`` and up of the integer, read as ``fmt``."""
-        return self._new(self.raw >> low & (1 << fmt.width) - 1, fmt)
+        sign = fmt.signed << fmt.width - 1
+        return self._new((self.raw >> low & (1 << fmt.width) - 1 ^ sign) - sign, fmt)
 
     def fault(self, name: str):
         """Count a fault called ``name`` wherever this bit is 1."""

@@ -88,7 +88,6 @@ class Core(wiring.Component):
 
         self._access = Access(m, self._lines, p, self._host)
         # Far from the lanes, which have time for it
-        self._row_stage = self._lines.later(self._sequencer.row_stage, STAGED, name="row_stage")
         self._velocity_shift = self._lines.later(self._host.velocity_shift, 1, name="velocity_shift")
         self._idle = Signal(init=1)
         m.d.sync += self._idle.eq(~self._sequencer.busy)
@@ -202,12 +201,14 @@ class Core(wiring.Component):
 
         entries = [slice(n * width, (n + 1) * width) for n in range(p.lanes)]
         self._valid = [unpack(record, front.word[entry])["valid"] for entry in entries]
+        bits = stage_bits(self._sequencer.row_stage)
+        stage = {bit: self._lines.later(value, STAGED, name=bit) for bit, value in bits.items()}
         for lane, entry in zip(self._lanes, entries, strict=True):
             m.d.comb += [
                 lane.flush.eq(self._loading),
                 lane.row_behind.eq(fetch.index),
                 lane.edge_behind.eq(fetch.word[entry]),
-                *(bit.eq(value) for bit, value in stage_bits(lane, self._row_stage)),
+                *(getattr(lane, bit).eq(value) for bit, value in stage.items()),
                 lane.velocity_shift.eq(self._velocity_shift),
             ]
 
@@ -240,7 +241,7 @@ class Core(wiring.Component):
                 updater.row.eq(front.index),
                 updater.mask.eq(entry["mask"]),
                 updater.velocity_shift.eq(self._velocity_shift),
-                *(bit.eq(value) for bit, value in stage_bits(updater, sequencer.node_stage)),
+                *(getattr(updater, bit).eq(value) for bit, value in stage_bits(sequencer.node_stage).items()),
             ]
         m.d.comb += sequencer.node_behind_last.eq(fetch.last)
         for lane in self._lanes:

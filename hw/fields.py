@@ -14,8 +14,6 @@ def unpack(record, word):
     return fields
 
 
-def stage_bits(component, stage):
-    """(port, value) of the stage bits of a component for a stage number."""
-    for bit in RK4.stage(0):
-        value = Array([RK4.stage(s)[bit] for s in range(RK4.stages)])[stage]
-        yield getattr(component, f"stage_{bit}"), value
+def stage_bits(stage) -> dict:
+    """The bits that tell a datapath its stage, by the names of its ports, for a stage number."""
+    return {f"stage_{bit}": Array([RK4.stage(s)[bit] for s in range(RK4.stages)])[stage] for bit in RK4.stage(0)}

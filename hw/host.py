@@ -38,6 +38,9 @@ LATENCY = 5 + MEMORY + 3 * CHOICE
 ANYTIME = Control.FAULTS, Control.REFUSED, Control.STOP
 """Control registers that may be written while the machine is busy."""
 
+COUNTS = Control.ROW_COUNT, Control.NODE_COUNT, Control.RUN
+"""Control registers into which 0 may not be written."""
+
 WRITABLE = [register for register in Control if register not in READ_ONLY]
 
 
@@ -123,14 +126,15 @@ class HostPort(wiring.Component):
             low += bits
         index, word, lane, region = parts
 
-        inside, lawful = Signal(len(Region)), self._lawful_data(data)
+        inside, small, some = Signal(len(Region)), self._small_enough(data), data.any()
         for r in Region:
             limits = self._map.depth(r), len(self._map.words(r)), self._map.lanes(r)
             places = zip((index, word, lane), limits, strict=True)
             m.d.comb += inside[r].eq(Cat(place < limit for place, limit in places).all())
-        request, write, index, word, lane, region, data, inside, lawful = self._registered(
-            m, "compared", request, write, index, word, lane, region, data, inside, lawful
+        request, write, index, word, lane, region, data, inside, small, some = self._registered(
+            m, "compared", request, write, index, word, lane, region, data, inside, small, some
         )
+        lawful = [bit & (some | (r not in COUNTS)) for bit, r in zip(small, Control, strict=True)]
         possible = Signal(len(Region))  # at all, were it this region; whether it is so just now is seen later
         for r in Region:
             m.d.comb += possible[r].eq(inside[r] & (~write | self._writable(r, index, word, lawful)))
@@ -179,19 +183,19 @@ class HostPort(wiring.Component):
         m.d.sync += [register.eq(value) for register, value in zip(registers, values, strict=True)]
         return registers
 
-    def _lawful_data(self, data):
-        """A bit for each control register: whether such data may be written into it."""
+    def _small_enough(self, data):
+        """A bit for each control register: whether the data are not too great to be written into it."""
         p = self._map.parameters
-        lawful = {
+        small = {
             Control.FAULTS: Const(1),
             Control.REFUSED: Const(1),
             Control.STOP: Const(1),
-            Control.ROW_COUNT: (data != 0) & (data <= p.rows),
-            Control.NODE_COUNT: (data != 0) & (data <= p.nodes),
+            Control.ROW_COUNT: data <= p.rows,
+            Control.NODE_COUNT: data <= p.nodes,
             Control.VELOCITY_SHIFT: data < 1 << p.formats.exponent.width - 1,
-            Control.RUN: (data != 0) & (data < 1 << 32),
+            Control.RUN: data < 1 << 32,
         }
-        return Cat(lawful.get(register, Const(0)) for register in Control)
+        return Cat(small.get(register, Const(0)) for register in Control)
 
     def _writable(self, region, index, word, lawful):
         """Whether such a word may be written; a control register, when its data are lawful."""

@@ -94,7 +94,8 @@ class _Program:
             case "scale":
                 return operands[0]
             case "field":
-                return f"{operands[0]} >> {node.detail} & {(1 << node.fmt.width) - 1}"
+                sign = node.fmt.signed << node.fmt.width - 1
+                return f"({operands[0]} >> {node.detail} & {(1 << node.fmt.width) - 1} ^ {sign}) - {sign}"
             case "shift_left":
                 return " << ".join(operands)
             case "lead":

@@ -176,6 +176,12 @@ def test_field_reads_bits_of_the_integer():
             assert got.raw.tolist() == [int(text[q.width - low - width : q.width - low], 2) for text in bits]
 
 
+def test_a_field_with_a_sign_is_what_is_left_of_the_number():
+    x = QArray(every(Q(2, 4)), Q(2, 4), None)
+    assert x.field(1, Q(2, 3)).raw.tolist() == (x.raw // 2).tolist()
+    assert x.field(0, Q(1, 1)).raw.tolist() == ((x.raw + 2) % 4 - 2).tolist()
+
+
 def test_scale_is_another_reading_of_the_same_integer():
     x = QArray(every(Q(2, 2)), Q(2, 2), None)
     for power in (-5, 0, 3):

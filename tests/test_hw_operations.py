@@ -65,6 +65,7 @@ OPERATIONS = {
     "select 0": ([BIT, S], lambda b, x: {"out": b.select(0, x)}),
     "scale": ([S, U], lambda x, y: {"out": x.scale(3) + y.scale(-2)}),
     "field": ([U], lambda x: {"out": x.field(5, unsigned(1, 6)) + 0}),
+    "field with a sign": ([S], lambda x: {"out": x.field(2, Q(1, x.fmt.width - 3)) + 0}),
     "lead of one": ([WIDE], normalised(18)),
     "lead of a vector": ([WIDE, WIDE, WIDE], normalised(18)),
     "lead, unsigned": ([unsigned(0, 23)], normalised(12)),
