@@ -153,7 +153,7 @@ class Core(wiring.Component):
             front.behind.eq(behind),
             front.behind_valid.eq(fetch.valid),
             front.behind_ready.eq(getattr(sequencer, f"{name}_behind_ready")),
-            fetch.take.eq(front.behind_take),
+            fetch.moves.eq(front.moves),
             front.ready.eq(getattr(sequencer, f"{name}_ready")),
             getattr(sequencer, f"{name}_valid").eq(front.valid),
             getattr(sequencer, f"{name}_goes").eq(front.goes),
@@ -164,8 +164,7 @@ class Core(wiring.Component):
             progress.front.eq(need(entry.word)),
             progress.behind.eq(need(fetch.word)),
             progress.after.eq(need(fetch.next_word)),
-            progress.front_moves.eq(front.moves),
-            progress.behind_moves.eq(fetch.moves),
+            progress.moves.eq(front.moves),
             getattr(sequencer, f"{name}_{other}s").eq(progress.front_reached),
             getattr(sequencer, f"{name}_behind_{other}s").eq(progress.behind_reached),
         ]

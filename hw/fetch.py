@@ -32,12 +32,12 @@ class Fetch(wiring.Component):
         Entries of the list, at least 1.
     address : Out, data : In
         To the memory.
-    valid : Out(1), take : In(1)
-        There is an entry; it is taken.
+    valid : Out(1), moves : In(1)
+        There is an entry; it is taken, if there is one, and the next one comes.
     index, last, word : Out
         The entry: its place, whether it is the list's last, and what the memory holds there.
-    moves : Out(1), next_word : Out
-        ``word`` is ``next_word`` in the next cycle, if there is an entry then.
+    next_word : Out
+        ``word`` in the next cycle, if it ``moves`` and there is an entry then.
     """
 
     def __init__(self, *, index_bits: int, width: int, data_latency: int = READ_LATENCY):
@@ -50,11 +50,10 @@ class Fetch(wiring.Component):
                 "address": Out(index_bits),
                 "data": In(width),
                 "valid": Out(1),
-                "take": In(1),
+                "moves": In(1),
                 "index": Out(index_bits),
                 "last": Out(1),
                 "word": Out(width),
-                "moves": Out(1),
                 "next_word": Out(width),
             }
         )
@@ -64,7 +63,6 @@ class Fetch(wiring.Component):
         depth = 1 << (self._data_latency + 3).bit_length()  # enough for an entry a cycle
         entry = Cat(self.word, self.last, self.index)
         m.submodules.queue = queue = Queue(width=len(entry), depth=depth)
-        m.d.comb += self.moves.eq(~self.valid | self.take)
         with m.If(self.moves):
             m.d.sync += [entry.eq(queue.data), self.valid.eq(queue.valid)]
         with m.If(self.flush):
@@ -79,7 +77,7 @@ class Fetch(wiring.Component):
         with m.If(self.flush):
             m.d.sync += [self.address.eq(0), under_way.eq(0), taken.eq(0)]
         with m.Else():
-            m.d.sync += [taken.eq(self.take), under_way.eq(under_way + ask - taken)]
+            m.d.sync += [taken.eq(self.moves & self.valid), under_way.eq(under_way + ask - taken)]
             with m.If(ask):
                 m.d.sync += self.address.eq(self.address + 1)
                 with m.If(last):

@@ -18,12 +18,12 @@ class Front(wiring.Component):
     Members
     -------
     flush : In(1)
-    behind, behind_valid, behind_ready : In, behind_take : Out(1)
-        The next entry, if there is one; whether it is ready; it moves to the front.
+    behind, behind_valid, behind_ready : In
+        The next entry, if there is one; whether it is ready.
     entry, valid, goes : Out
         The entry in front, if there is one; it goes in this cycle.
     moves : Out(1)
-        There is none in front in the next cycle but the one behind.
+        In the next cycle the one behind is in front, or none.
     ready : In(1)
         The entry in front is ready.
     """
@@ -36,7 +36,6 @@ class Front(wiring.Component):
                 "behind": In(width),
                 "behind_valid": In(1),
                 "behind_ready": In(1),
-                "behind_take": Out(1),
                 "entry": Out(width),
                 "valid": Out(1),
                 "goes": Out(1),
@@ -47,7 +46,6 @@ class Front(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        m.d.comb += self.behind_take.eq(self.moves & self.behind_valid)
         with m.If(self.moves):
             m.d.sync += [
                 self.entry.eq(self.behind),

@@ -27,7 +27,7 @@ class Progress(wiring.Component):
         One more entry is done; it is its list's last, with which the count begins again.
     front, behind, after : In
         What the entries need: each of them less than the count.
-    front_moves, behind_moves : In(1)
+    moves : In(1)
         In the next cycle the entry behind is in front, the one after that is behind.
     front_reached, behind_reached : Out(1)
         There is what is needed, as the count is in this cycle.
@@ -44,8 +44,7 @@ class Progress(wiring.Component):
                 "front": In(width),
                 "behind": In(width),
                 "after": In(width),
-                "front_moves": In(1),
-                "behind_moves": In(1),
+                "moves": In(1),
                 "front_reached": Out(1),
                 "behind_reached": Out(1),
             }
@@ -66,7 +65,7 @@ class Progress(wiring.Component):
 
         front, behind, after = (reached(need) for need in (self.front, self.behind, self.after))
         m.d.sync += [
-            self.front_reached.eq(Mux(self.front_moves, behind, front)),
-            self.behind_reached.eq(Mux(self.behind_moves, after, behind)),
+            self.front_reached.eq(Mux(self.moves, behind, front)),
+            self.behind_reached.eq(Mux(self.moves, after, behind)),
         ]
         return m
