@@ -14,19 +14,19 @@ def word(index: int) -> int:
 
 
 class Memory:
-    """Answers an address `READ_LATENCY` cycles later."""
+    """Answers an address some cycles later."""
 
-    def __init__(self, dut):
-        self._dut, self._asked = dut, [0] * READ_LATENCY
+    def __init__(self, dut, cycles=READ_LATENCY):
+        self._dut, self._asked = dut, [0] * cycles
 
     def step(self, ctx):
         ctx.set(self._dut.data, word(self._asked[0]))
         self._asked = [*self._asked[1:], ctx.get(self._dut.address)]
 
 
-def take_all(dut, count, cycles, wanted):
+def take_all(dut, count, cycles, wanted, data_latency=READ_LATENCY):
     """(entries taken as (index, last, word), cycles in which there was none). ``wanted(cycle)``: one would be taken."""
-    taken, missing, memory, expected = [], [], Memory(dut), None
+    taken, missing, memory, expected = [], [], Memory(dut, data_latency), None
 
     async def bench(ctx):
         nonlocal expected
@@ -59,9 +59,11 @@ def entries(count, number):
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 8, 9, 1 << BITS])
-def test_one_a_cycle_once_it_is_under_way(count):
-    taken, missing = take_all(Fetch(index_bits=BITS, width=8), count, 200, lambda cycle: True)
-    assert missing == list(range(latency(READ_LATENCY)))
+@pytest.mark.parametrize("data_latency", range(READ_LATENCY, 10))  # some of them fill the queue
+def test_one_a_cycle_once_it_is_under_way(count, data_latency):
+    fetch = Fetch(index_bits=BITS, width=8, data_latency=data_latency)
+    taken, missing = take_all(fetch, count, 200, lambda cycle: True, data_latency)
+    assert missing == list(range(latency(data_latency)))
     assert taken == entries(count, 200 - len(missing))
 
 

@@ -168,7 +168,7 @@ def test_a_run_that_is_stopped_ends_with_a_step_at_most_one_later(kind, latencie
 
 @pytest.mark.parametrize("nodes", [2, 32])
 @pytest.mark.parametrize("rows", [1, 64])
-def test_the_shortest_and_the_longest_lists(nodes, rows, rng):
+def test_short_and_long_lists(nodes, rows, rng):
     lists = random_lists(rng, nodes, rows, 1, "sorted")
     watched(Run(Sequencer(), lists, 2, (5, 3), 1.0, rng))
 
