@@ -6,10 +6,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from hw_objects import core_to_ask, only_asked
+from hw_objects import core_to_ask
 
 from golden import files
-from hw import __main__ as cli
 from hw import build, lint, manifest
 from hw.__main__ import main
 from hw.build import MANIFEST, VERILOG
@@ -284,17 +283,6 @@ def test_lint_passes_on_what_breaks_verilator(tmp_path, monkeypatch):
     monkeypatch.setattr(lint.subprocess, "run", lambda *args, **kwargs: Done)
     with pytest.raises(RuntimeError, match="verilator failed: no such library"):
         lint.lint(tmp_path / VERILOG, top="rheogate")
-
-
-def test_docs_brings_the_tables_up_to_date(tmp_path, monkeypatch, capsys):
-    readme = tmp_path / "README.md"
-    fresh = (ROOT / "README.md").read_text()
-    readme.write_text(fresh.replace("| position | Q3.33 |", "| position | Q3.32 |"))
-    monkeypatch.setattr(cli, "ROOT", tmp_path)
-    with only_asked():
-        assert main(["docs"]) == 0 and main(["docs"]) == 0
-    assert readme.read_text() == fresh
-    assert said(capsys) == (["README.md: tables written anew", "README.md: up to date"], [])
 
 
 def test_it_is_a_module():

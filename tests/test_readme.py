@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from golden import model, scene
+from hw import __main__ as cli
 from hw.docs import TABLES, updated
 from hw.parameters import Parameters
 from sim.__main__ import parser
@@ -22,6 +23,15 @@ def blocks(language: str = "") -> list[str]:
 
 def test_tables_are_fresh():
     assert updated(README) == README, "run `python -m hw docs`"
+
+
+def test_docs_brings_the_tables_up_to_date(tmp_path, monkeypatch, capsys):
+    readme = tmp_path / "README.md"
+    readme.write_text(README.replace("| position | Q3.33 |", "| position | Q3.32 |"))
+    monkeypatch.setattr(cli, "ROOT", tmp_path)
+    assert cli.main(["docs"]) == 0 and cli.main(["docs"]) == 0
+    assert readme.read_text() == README
+    assert tuple(capsys.readouterr()) == ("README.md: tables written anew\nREADME.md: up to date\n", "")
 
 
 @pytest.mark.parametrize("name", TABLES)
