@@ -54,7 +54,7 @@ class DelayLines:
     def __init__(self, m: Module):
         self._m, self._lines = m, {}
 
-    def later(self, value: Value, cycles: int, *, name: str = "", reset: bool = False) -> Value:
+    def later(self, value: Value, cycles: int, *, name: str = "", reset: bool = False, wire: bool = False) -> Value:
         """``value`` so many cycles later.
 
         Parameters
@@ -63,11 +63,16 @@ class DelayLines:
             What the registers are called after; a signal's own name if not given.
         reset : bool
             Whether the value is 0 after a reset. What only matters beside something valid needs none.
+        wire : bool
+            Whether the value comes from logic, not from a register: then a register takes it before any ring does, for
+            the way to a memory is long.
         """
         if not cycles or isinstance(value, Const):
             return value
         name = name or value.name
         _, taps = self._lines.setdefault((id(value), reset), (value, {}))
+        if wire and cycles > 1:
+            self.later(value, 1, name=name, reset=reset)
         if cycles not in taps:
             taps[cycles] = Signal(value.shape(), name=f"{name}_d{cycles}", reset_less=not reset)
         return taps[cycles]

@@ -70,7 +70,8 @@ class Pipe:
             return field(node, self.at(node.operands[0], cycle))
         if node.kind == "input":
             return self._input(node, cycle)
-        return self._delays.later(self._results[node], cycle - self._schedule.cycle[node], name=node.name)
+        start, done = self._schedule.start[node], self._schedule.cycle[node]
+        return self._delays.later(self._results[node], cycle - done, name=node.name, wire=start == done)
 
     def _input(self, node, cycle):
         first = self._schedule.cycle[node]
