@@ -11,7 +11,7 @@ from .blocks.narrow import NarrowMultiplier
 from .blocks.shifter import ShiftStage
 from .delay import DelayLines
 from .operations import STEPS, field, never, shape, shift_count, step_count
-from .schedule import WIRES, Schedule
+from .schedule import WIRES, Schedule, behind_wires
 
 FAULT_LATENCY = 1
 """Cycles from a value to its fault."""
@@ -42,6 +42,9 @@ class Pipe:
         self._delays, self._results = DelayLines(m), {}
         self._valid = valid
         self._faults: dict[str, list] = {}
+        # The terms of a sum come from all over the device, and it has more to do in its cycle than others
+        sums = [node for node in schedule.graph.nodes if node.kind == "sum"]
+        self._summed = {behind_wires(term) for node in sums for term in node.operands}
         for node in schedule.graph.nodes:
             if node in schedule.start:
                 self._emit(node)
@@ -95,7 +98,8 @@ class Pipe:
     def _product(self, node, operands, registers):
         narrow = self._schedule.cost.narrow_product(node)
         make, (a, b) = (NarrowMultiplier, sorted(operands, key=len)[::-1]) if narrow else (Multiplier, operands)
-        self._m.submodules[node.name] = multiplier = make(a.shape(), b.shape(), registers=registers)
+        how = {} if narrow else {"apart": node in self._summed}
+        self._m.submodules[node.name] = multiplier = make(a.shape(), b.shape(), registers=registers, **how)
         self._m.d.comb += [multiplier.a.eq(a), multiplier.b.eq(b)]
         return multiplier.product
 

@@ -83,8 +83,7 @@ class Schedule:
         one cycle."""
         if user.kind == "mul":
             return int(user in self._more)
-        while operand.kind in WIRES:
-            operand = operand.operands[0]
+        operand = behind_wires(operand)
         return int(rounds(operand) and not self._cycles(operand) and (user.kind in CARRIES or rounds(user)))
 
     def _place(self):
@@ -160,3 +159,8 @@ class Schedule:
 def rounds(node: Node) -> bool:
     """Whether it needs a carry chain: where no bits are dropped, nothing is rounded."""
     return node.kind == "round" and node.operands[0].fmt.frac_bits > node.fmt.frac_bits
+
+
+def behind_wires(node: Node) -> Node:
+    """The operation whose bits a node is."""
+    return behind_wires(node.operands[0]) if node.kind in WIRES else node

@@ -37,7 +37,7 @@ class Recorder:
         self.multipliers, self.rams, self.shifts = set(), set(), set()
 
     def get_multiplier(self, block):
-        self.multipliers.add((block.a.shape(), block.b.shape(), block.registers))
+        self.multipliers.add((block.a.shape(), block.b.shape(), block.registers, block.apart))
 
     def get_shift_stage(self, block):
         self.shifts.add((block.i.shape(), len(block.times), block.places, block.left))
@@ -55,9 +55,11 @@ def asked():
 
 
 def multipliers(asked):
-    """Those of the circuit, then each pair of signs and some widths, with and without the pipeline register."""
+    """Those of the circuit, then each pair of signs and some widths, with and without the pipeline register, or with
+    one that stands apart."""
     shapes = [*SHAPES, (signed(2), unsigned(1)), (unsigned(18), signed(2))]
-    return sorted(asked.multipliers | {(*pair, registers) for pair in shapes for registers in (2, 3)}, key=str)
+    registers = (2, False), (3, False), (3, True)
+    return sorted(asked.multipliers | {(*pair, *how) for pair in shapes for how in registers}, key=str)
 
 
 def rams(asked, rng):
@@ -83,13 +85,13 @@ def twins(asked):
     """(block, inputs, outputs of it and of its twin) of all multipliers, of all block RAMs, of all shifts."""
     rng = np.random.default_rng(1)
     of_two, of_words = multipliers(asked), rams(asked, rng)
-    inputs = [dict(zip("ab", operands((a, b), rng, CYCLES), strict=True)) for a, b, _ in of_two]
+    inputs = [dict(zip("ab", operands((a, b), rng, CYCLES), strict=True)) for a, b, *_ in of_two]
     inputs = [{name: np.array(values[:CYCLES]) for name, values in pair.items()} for pair in inputs]
     inputs += [traffic(width, depth, rng) for width, depth, _ in of_words]
     of_places = sorted(asked.shifts, key=str)
     inputs += [{"i": rng.integers(1 << shape.width, size=CYCLES) - (shape.signed << shape.width - 1),
                 "times": rng.integers(1 << bits, size=CYCLES)} for shape, bits, _, _ in of_places]
-    blocks = [Multiplier(a, b, registers=registers) for a, b, registers in of_two]
+    blocks = [Multiplier(a, b, registers=registers, apart=apart) for a, b, registers, apart in of_two]
     blocks += [BlockRam(width=width, depth=depth, init=init) for width, depth, init in of_words]
     blocks += [ShiftStage(*stage, left=left) for *stage, left in of_places]
     outputs = run(blocks, inputs, BUILD)
@@ -98,8 +100,9 @@ def twins(asked):
     return [list(itertools.islice(together, len(group))) for group in groups]
 
 
-def test_multipliers_have_their_twins_bits_in_the_same_cycle(twins):
-    for (a, b, registers), inputs, (generic, ecp5) in twins[0]:
+def test_multipliers_have_their_twins_bits_in_the_same_cycle(asked, twins):
+    assert {apart for *_, apart in asked.multipliers} == {False, True}
+    for (a, b, registers, _), inputs, (generic, ecp5) in twins[0]:
         product = inputs["a"] * inputs["b"] & (1 << a.width + b.width) - 1
         for output in (generic, ecp5):
             assert np.array_equal(output[registers:].astype(np.int64), product[:-registers]), (a, b, registers)
@@ -146,10 +149,13 @@ def test_a_memory_takes_as_few_blocks_as_hold_it(width, depth, blocks):
         assert len(blocks) == min(math.ceil(width / bits) for bits, words in BLOCKS if words >= depth)
 
 
-@pytest.mark.parametrize(("width", "registers", "blocks"), [(18, 2, 1), (18, 3, 1), (18, 4, 0), (19, 3, 0), (1, 3, 1)])
-def test_a_multiplier_that_does_not_fit_stays_generic(width, registers, blocks):
+@pytest.mark.parametrize(("width", "registers", "apart", "blocks"), [
+    (18, 2, False, 1), (18, 3, False, 1), (18, 4, False, 0), (19, 3, False, 0), (1, 3, False, 1),
+    (18, 2, True, 1), (18, 4, True, 1), (18, 5, True, 0),
+])
+def test_a_multiplier_that_does_not_fit_stays_generic(width, registers, apart, blocks):
     for a, b in ((width, 18), (18, width)):
-        assert len(placed(Multiplier(signed(a), unsigned(b), registers=registers))) == blocks
+        assert len(placed(Multiplier(signed(a), unsigned(b), registers=registers, apart=apart))) == blocks
 
 
 @pytest.fixture(scope="module")

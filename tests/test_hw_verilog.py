@@ -109,7 +109,8 @@ def test_each_kind_of_component_is_one_module(text):
         "accumulator_add", "accumulator_subtract", "block_ram_10x36", "block_ram_16x36", "block_ram_512x36",
         "edge_processor", "front_37", "front_4", "lut_ram_3x1", "lut_ram_3x15", "lut_ram_3x18", "lut_ram_3x36",
         "lut_ram_3x4", "lut_ram_3x8", "narrow_multiplier_u16_8",
-        "multiplier_s18_s18", "multiplier_s18_u18", "multiplier_u14_u17", "multiplier_u18_s18", "multiplier_u18_u18",
+        "multiplier_s18_s18_apart", "multiplier_s18_u18", "multiplier_u14_u17",
+        "multiplier_u18_s18", "multiplier_u18_u18",
         "rom_1024x36", *[name for name in lane if name == "lut_ram_3x12"],
     }
     top = {name.removeprefix(f"{TOP}_") for name in names if not name.startswith(LANE)}
@@ -135,7 +136,7 @@ def test_ports_are_those_of_the_manifest_clock_first(text, built):
 def test_a_lane_has_as_many_multipliers_as_a_dsp_block_each():
     """What synthesis makes of them is in test_hw_synthesis.py."""
     lane, _, core = modules(SMALL)
-    placed = re.findall(rf"^  {LANE}_multiplier_[su](\d+)_[su](\d+) \w+ \($", lane, re.MULTILINE)
+    placed = re.findall(rf"^  {LANE}_multiplier_[su](\d+)_[su](\d+)(?:_apart)? \w+ \($", lane, re.MULTILINE)
     products = [node for node in core.datapath.graph.nodes if node.kind == "mul"]
     assert len(placed) == sum(not SMALL.cost.narrow_product(node) for node in products) <= 24
     assert all(int(a) <= 18 and int(b) <= 18 for a, b in placed)

@@ -24,6 +24,8 @@ class Multiplier(wiring.Component):
         Operands.
     registers : int
         At least 2.
+    apart : bool
+        Whether the last register, of three or more, may stand where the product is used instead of in the block.
 
     Members
     -------
@@ -36,12 +38,12 @@ class Multiplier(wiring.Component):
         If there are fewer than 2 registers.
     """
 
-    def __init__(self, a, b, *, registers: int):
+    def __init__(self, a, b, *, registers: int, apart: bool = False):
         if registers < 2:
             raise ValueError(f"registers must be at least 2, not {registers!r}")
-        self.registers = registers
+        self.registers, self.apart = registers, apart and registers > 2
         a, b = Shape.cast(a), Shape.cast(b)
-        self.kind = f"multiplier_{letter(a)}{a.width}_{letter(b)}{b.width}"
+        self.kind = f"multiplier_{letter(a)}{a.width}_{letter(b)}{b.width}" + "_apart" * self.apart
         product = Shape(a.width + b.width, a.signed or b.signed)
         super().__init__({"a": In(a), "b": In(b), "product": Out(product)})
 

@@ -48,8 +48,9 @@ class Queue(wiring.Component):
         m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=())
         write, read = words.write_port(), words.read_port(domain="comb")
         places = [Signal(range(self.depth), name=name) for name in ("next_in", "next_out")]
-        # A word stands in front of the memory, in a register: the memory is never full. Whether words wait in it is
-        # known from a register too: all of the word in front hangs on it
+        # A word stands in front of the memory, in a register: the memory is never full, and what is written to its free
+        # place in cycles in which nothing is put in there is written over later. Whether words wait in it is known from
+        # a register too: all of the word in front hangs on it
         moves, waiting, passes = Signal(), Signal(), Signal()
         store, fetch, single = Signal(), Signal(), Signal()
         m.d.comb += [
@@ -58,7 +59,7 @@ class Queue(wiring.Component):
             passes.eq(moves & ~waiting),
             store.eq(self.put & ~passes),
             fetch.eq(moves & waiting),
-            write.en.eq(store),
+            write.en.eq(1),
             write.data.eq(self.data_in),
         ]
         with m.If(moves):

@@ -30,12 +30,13 @@ class Ecp5:
     """
 
     def get_multiplier(self, multiplier) -> Module | None:
-        """A MULT18X18D: registers at its inputs and its output, a third one between."""
+        """A MULT18X18D: registers at its inputs and its output, a third one between, or behind it, apart."""
         operands = multiplier.a, multiplier.b
-        if multiplier.registers > 3 or max(map(len, operands)) > WIDTH:
+        inside = multiplier.registers - multiplier.apart
+        if inside > 3 or max(map(len, operands)) > WIDTH:
             return None
         m = Module()
-        stages = ["INPUTA", "INPUTB", "OUTPUT"] + ["PIPELINE"] * (multiplier.registers - 2)
+        stages = ["INPUTA", "INPUTB", "OUTPUT"] + ["PIPELINE"] * (inside - 2)
         clocks = {f"p_REG_{stage}_CLK": "CLK0" for stage in stages}
         ports = {"i_CLK0": ClockSignal(), "i_CE0": HIGH, "i_RST0": LOW, **_inputs("C", [], WIDTH)}
         for name, operand in zip("AB", operands, strict=True):
@@ -43,7 +44,11 @@ class Ecp5:
             ports |= {f"i_SIGNED{name}": HIGH if signed else LOW, f"i_SOURCE{name}": LOW}
             ports |= _inputs(name, operand, WIDTH, beyond=operand[-1] if signed else LOW)
         product = _word("product", len(multiplier.product))
-        m.d.comb += multiplier.product.eq(Cat(product))
+        behind = Cat(product)
+        if multiplier.apart:
+            behind = Signal(len(product), name="apart", reset_less=True)
+            m.d.sync += behind.eq(Cat(product))
+        m.d.comb += multiplier.product.eq(behind)
         m.submodules.block = Instance("MULT18X18D", p_GSR="DISABLED", **clocks, **ports, **_outputs("P", product))
         return m
 
