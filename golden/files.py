@@ -1,14 +1,18 @@
 """Files that are there whole or not at all."""
 
+import itertools
 import os
 from contextlib import contextmanager
 from pathlib import Path
+
+_numbers = itertools.count()
+"""So that threads don't share a file that isn't whole yet."""
 
 
 @contextmanager
 def replaced(path: Path):
     """An open binary file that takes the place of ``path`` at the end, unless an exception ends it."""
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
+    partial = path.with_name(f".{path.name}.{os.getpid()}.{next(_numbers)}")
     try:
         with open(partial, "wb") as file:
             yield file
