@@ -43,7 +43,7 @@ def synthesise(verilog: str, folder: Path, name: str) -> dict:
 def place_and_route(board: Board, folder: Path, name: str, seed: int) -> dict:
     """nextpnr's report about the netlist in the folder. A clock that it misses is no failure.
 
-    Placing alone takes 20 to 30 minutes for four lanes: a report of the same netlist that is there is taken as it is.
+    It takes an hour for four lanes: a report of the same netlist that is there is taken as it is.
     """
     write_text(folder / f"{name}.lpf", "")  # pins don't matter
     report = f"{name}.{seed}.report.json"
