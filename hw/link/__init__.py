@@ -1,0 +1,1 @@
+"""The link: how a host talks to the circuit over two wires."""

@@ -1,0 +1,69 @@
+"""What goes over the line: frames, ``00 | COBS(header, payload, CRC-32) | 00``.
+
+The header is type, seq, status, reserved and the payload's length, two bytes, lowest first. The CRC is that of Ethernet
+and zlib over `Protocol.key`, which is not sent, header and payload: who was made for another map of the memory gets no
+frame accepted. A greeting and its answer are without the key, so that the two can find out.
+"""
+
+import struct
+import zlib
+from dataclasses import dataclass
+
+from amaranth.lib import crc
+from cobs import cobs
+
+HEADER = struct.Struct("<BBBBH")
+PAYLOAD_MOST = 512
+CRC_BYTES = 4
+KEY_BYTES = 8
+LEAST, MOST = HEADER.size + CRC_BYTES, HEADER.size + PAYLOAD_MOST + CRC_BYTES
+"""Bytes of a frame without zeros around it and before COBS."""
+
+CRC = crc.catalog.CRC32_ISO_HDLC
+GREETING = 0x01
+"""The type that goes without the key, and with the top bit its answer."""
+ANSWER = 0x80
+"""Set in the type of every frame from the device."""
+
+
+class FrameError(ValueError):
+    """Bytes that are no frame; ``kind`` is the counter that the device would count it in."""
+
+    def __init__(self, kind: str):
+        super().__init__(kind)
+        self.kind = kind
+
+
+@dataclass(frozen=True)
+class Frame:
+    type: int
+    seq: int
+    status: int = 0
+    payload: bytes = b""
+
+    def packed(self, key: bytes) -> bytes:
+        """As it goes over the line. Raises ValueError for a payload that is too long."""
+        if len(self.payload) > PAYLOAD_MOST:
+            raise ValueError(f"payload must be at most {PAYLOAD_MOST} bytes, not {len(self.payload)}")
+        body = HEADER.pack(self.type, self.seq, self.status, 0, len(self.payload)) + self.payload
+        return b"\0" + cobs.encode(body + struct.pack("<I", _crc(body, key))) + b"\0"
+
+
+def unpacked(coded: bytes, key: bytes) -> Frame:
+    """The frame of what stood between two zeros. Raises `FrameError`."""
+    try:
+        body = cobs.decode(coded)
+    except cobs.DecodeError:
+        raise FrameError("cobs_errors") from None
+    if len(body) < LEAST or len(body) > MOST:
+        raise FrameError("length_errors")
+    type_, seq, status, _, length = HEADER.unpack_from(body)
+    if len(body) != LEAST + length:
+        raise FrameError("length_errors")
+    if struct.pack("<I", _crc(body[:-CRC_BYTES], key)) != body[-CRC_BYTES:]:
+        raise FrameError("crc_errors")
+    return Frame(type_, seq, status, body[HEADER.size : -CRC_BYTES])
+
+
+def _crc(body: bytes, key: bytes) -> int:
+    return zlib.crc32(body, zlib.crc32(key) if body[0] & ~ANSWER != GREETING else 0)

@@ -1,0 +1,150 @@
+"""From bytes to frames: stored whole, and shown only when all is right."""
+
+from amaranth.hdl import Array, Cat, Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..blocks.memory import BlockRam
+from .crc import FrameCrc
+from .frame import HEADER, LEAST, MOST, PAYLOAD_MOST
+
+SLOTS = 4
+"""Frames there is room for: one that comes, those that wait, one that is worked on."""
+
+EVENTS = "good_frames", "line_errors", "breaks", "cobs_errors", "length_errors", "crc_errors", "overruns"
+"""What may become of the bytes between two zeros; and a break, which is none."""
+
+
+class FrameReceiver(wiring.Component):
+    """Takes a frame's bytes as they come, and gives whole frames in their order.
+
+    A zero byte or a break ends a frame; nothing between two of them is no frame and no error. A frame is dropped, and
+    counted as the first of these that applies: a byte lacked its stop bit or a break came (`line_errors`), it isn't
+    COBS (`cobs_errors`), is not as long as it says (`length_errors`), has a wrong CRC (`crc_errors`), there is no room
+    for it (`overruns`).
+
+    Parameters
+    ----------
+    key : bytes
+
+    Members
+    -------
+    valid : In(1), data : In(8)
+        A byte, every `KEY_BYTES` + 4 cycles at the most.
+    error : In(1), broken : In(1)
+        As of `hw.link.uart.Receiver`.
+    frame : Out(1), type : Out(8), seq : Out(8), length : Out
+        There is a frame: its header.
+    place : In, byte : Out(8)
+        A byte of its payload, `hw.blocks.memory.READ_LATENCY` cycles after its place.
+    take : In(1)
+        The frame has been worked on: another may come. Only while ``frame``.
+    <event> : Out(1)
+        For one cycle.
+    """
+
+    def __init__(self, key: bytes):
+        self._key = key
+        super().__init__(
+            {
+                "valid": In(1),
+                "data": In(8),
+                "error": In(1),
+                "broken": In(1),
+                "frame": Out(1),
+                "type": Out(8),
+                "seq": Out(8),
+                "length": Out(range(PAYLOAD_MOST + 1)),
+                "place": In(range(PAYLOAD_MOST)),
+                "byte": Out(8),
+                "take": In(1),
+                **{event: Out(1) for event in EVENTS},
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        ends = Signal()
+        m.d.comb += ends.eq(self.valid & (self.data == 0) | self.broken)
+        decoded, byte, bad_cobs = self._decode(m, ends)
+        count = Signal(range(MOST + 2))  # of decoded bytes; one more than there may be stands for all beyond
+        with m.If(decoded & (count <= MOST)):
+            m.d.sync += count.eq(count + 1)
+        header = self._header(m, decoded, byte, count)
+        length = Cat(header[4], header[5])
+        crc_ok = self._crc(m, decoded, byte, ends)
+        room = self._store(m, decoded, byte, count, header)
+
+        some, bad_line = Signal(), Signal()
+        with m.If(ends):
+            m.d.sync += [count.eq(0), some.eq(0), bad_line.eq(0)]
+        with m.Elif(self.valid | self.error):
+            m.d.sync += [some.eq(1), bad_line.eq(bad_line | self.error)]
+        verdicts = (
+            ("line_errors", bad_line | self.broken),
+            ("cobs_errors", bad_cobs),
+            ("length_errors", (count < LEAST) | (count != length + LEAST)),
+            ("crc_errors", ~crc_ok),
+            ("overruns", ~room),
+        )
+        with m.If(ends & some):
+            with m.If(verdicts[0][1]):
+                m.d.comb += self.line_errors.eq(1)
+            for event, applies in verdicts[1:]:
+                with m.Elif(applies):
+                    m.d.comb += getattr(self, event).eq(1)
+            with m.Else():
+                m.d.comb += self.good_frames.eq(1)
+        m.d.comb += self.breaks.eq(self.broken)
+        return m
+
+    def _decode(self, m, ends):
+        """(there is a byte behind COBS, it, what came so far doesn't end like COBS) a cycle after the line's byte."""
+        # Bytes that the block still has, whether no zero is behind it, whether there is one
+        left, full, begun = Signal(8), Signal(), Signal()
+        decoded, byte = Signal(), Signal(8)
+        m.d.sync += decoded.eq(0)
+        with m.If(ends):
+            m.d.sync += [left.eq(0), begun.eq(0)]
+        with m.Elif(self.valid):
+            with m.If(left == 0):
+                m.d.sync += [left.eq(self.data - 1), full.eq(self.data == 0xFF), begun.eq(1)]
+                m.d.sync += [decoded.eq(begun & ~full), byte.eq(0)]
+            with m.Else():
+                m.d.sync += [left.eq(left - 1), decoded.eq(1), byte.eq(self.data)]
+        return decoded, byte, left != 0
+
+    def _header(self, m, decoded, byte, count):
+        header = [Signal(8, name=f"header_{n}") for n in range(HEADER.size)]
+        for n, register in enumerate(header):
+            with m.If(decoded & (count == n)):
+                m.d.sync += register.eq(byte)
+        return header
+
+    def _crc(self, m, decoded, byte, ends):
+        m.submodules.crc = crc = FrameCrc(self._key)
+        m.d.comb += [crc.valid.eq(decoded), crc.data.eq(byte), crc.start.eq(ends)]
+        return crc.match
+
+    def _store(self, m, decoded, byte, count, header):
+        """Payloads one behind the other in a memory, headers in registers; whether there is room for this one."""
+        m.submodules.payloads = payloads = BlockRam(width=8, depth=SLOTS * PAYLOAD_MOST)
+        coming, worked, waiting = Signal(range(SLOTS)), Signal(range(SLOTS)), Signal(range(SLOTS + 1))
+        room, place = Signal(), Signal(range(MOST + 2))
+        kept = [Signal(24 + 8, name=f"kept_{slot}") for slot in range(SLOTS)]
+        first = Array(kept)[worked]
+        m.d.comb += [
+            room.eq(waiting != SLOTS),
+            place.eq(count - HEADER.size),
+            payloads.write.eq(decoded & (count >= HEADER.size) & (place < PAYLOAD_MOST) & room),
+            payloads.write_address.eq(Cat(place[: len(self.place)], coming)),
+            payloads.write_data.eq(byte),
+            payloads.address.eq(Cat(self.place, worked)),
+            self.byte.eq(payloads.data),
+            self.frame.eq(waiting != 0),
+            Cat(self.type, self.seq, self.length).eq(first),
+        ]
+        with m.If(self.good_frames):
+            m.d.sync += [Array(kept)[coming].eq(Cat(header[0], header[1], header[4], header[5])), coming.eq(coming + 1)]
+        m.d.sync += [waiting.eq(waiting + self.good_frames - self.take), worked.eq(worked + self.take)]
+        return room

@@ -1,0 +1,134 @@
+"""The serial line: eight data bits, no parity, one stop bit."""
+
+from amaranth.hdl import Cat, Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.cdc import FFSynchronizer
+from amaranth.lib.wiring import In, Out
+
+BAUD_LEAST, BAUD_MOST = 115_200, 3_000_000
+LEAST_CYCLES = 8
+"""Cycles a bit needs: its three votes have to be taken near its middle."""
+MOST_ERROR = 0.015
+"""By how much the rate may miss the one asked for. A receiver stands 2 % and more."""
+
+
+def cycles_per_bit(clock_hz: float, baud: int) -> int:
+    """Clock cycles of a bit.
+
+    Raises
+    ------
+    ValueError
+        If the rate is out of range, too fast for the clock, or missed by more than `MOST_ERROR`.
+    """
+    if not BAUD_LEAST <= baud <= BAUD_MOST:
+        raise ValueError(f"baud must be {BAUD_LEAST} to {BAUD_MOST}, not {baud}")
+    cycles = round(clock_hz / baud)
+    if cycles < LEAST_CYCLES:
+        raise ValueError(f"baud must be at most {clock_hz / LEAST_CYCLES:.0f} with a clock of {clock_hz / 1e6:g} MHz, "
+                         f"not {baud}")
+    if abs(error := achieved(clock_hz, cycles) / baud - 1) > MOST_ERROR:
+        raise ValueError(f"baud must be a rate that a clock of {clock_hz / 1e6:g} MHz meets within {MOST_ERROR:.1%}, "
+                         f"not {baud}: {cycles} cycles a bit are {error:+.1%} off")
+    return cycles
+
+
+def achieved(clock_hz: float, cycles: int) -> float:
+    """Bits a second."""
+    return clock_hz / cycles
+
+
+class Receiver(wiring.Component):
+    """Bytes from the line. A bit is what two of three samples around its middle say; a start bit that isn't one is
+    taken for noise and ignored.
+
+    Parameters
+    ----------
+    cycles : int
+        Of a bit, at least `LEAST_CYCLES`.
+
+    Members
+    -------
+    rx : In(1)
+        The line, 1 when idle; asynchronous.
+    valid : Out(1), data : Out(8)
+        A byte has come, for one cycle.
+    error : Out(1)
+        For one cycle: a byte without its stop bit. Nothing is taken for a start bit until the line is idle again.
+    broken : Out(1)
+        With ``error``: all of its bits were 0, a break.
+    """
+
+    def __init__(self, cycles: int):
+        if cycles < LEAST_CYCLES:
+            raise ValueError(f"cycles must be at least {LEAST_CYCLES}, not {cycles!r}")
+        self._cycles = cycles
+        super().__init__(
+            {"rx": In(1), "valid": Out(1), "data": Out(8), "error": Out(1), "broken": Out(1)}
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        line = Signal(init=1)
+        m.submodules += FFSynchronizer(self.rx, line, init=1)
+        middle, apart = self._cycles // 2, max(1, self._cycles // 8)
+        votes = middle - apart, middle, middle + apart
+        place, samples, bits = Signal(range(self._cycles)), Signal(2), Signal(range(10))
+        majority = (samples & line.replicate(2)).any() | samples.all()
+        m.d.sync += [self.valid.eq(0), self.error.eq(0), place.eq(place + 1)]
+        with m.If(place == self._cycles - 1):
+            m.d.sync += place.eq(0)
+        with m.If(Cat(place == vote for vote in votes[:2]).any()):
+            m.d.sync += samples.eq(Cat(line, samples[0]))
+        with m.FSM():
+            with m.State("idle"):
+                m.d.sync += [place.eq(1), bits.eq(0)]  # in cycle 0 of the start bit the line has just fallen
+                with m.If(~line):
+                    m.next = "bits"
+            with m.State("bits"):
+                with m.If(place == votes[2]):
+                    m.d.sync += bits.eq(bits + 1)
+                    with m.If((bits == 0) & majority):
+                        m.next = "idle"
+                    with m.Elif(bits == 9):
+                        m.d.sync += [self.valid.eq(majority), self.error.eq(~majority)]
+                        m.d.sync += self.broken.eq(~majority & ~self.data.any())
+                        with m.If(majority):
+                            m.next = "idle"
+                        with m.Else():
+                            m.next = "wait"
+                    with m.Elif(bits != 0):
+                        m.d.sync += self.data.eq(Cat(self.data[1:], majority))
+            with m.State("wait"):
+                with m.If(line):
+                    m.next = "idle"
+        return m
+
+
+class Transmitter(wiring.Component):
+    """Bytes to the line.
+
+    Members
+    -------
+    valid : In(1), data : In(8), ready : Out(1)
+        A byte is taken in a cycle in which both are 1, and then is on the line for 10 times ``cycles``.
+    tx : Out(1)
+    """
+
+    def __init__(self, cycles: int):
+        self._cycles = cycles
+        super().__init__({"valid": In(1), "data": In(8), "ready": Out(1), "tx": Out(1, init=1)})
+
+    def elaborate(self, platform):
+        m = Module()
+        rest, place = Signal(9), Signal(range(self._cycles))  # a last 1 behind the stop bit ends it
+        busy = Signal()
+        m.d.comb += self.ready.eq(~busy)
+        with m.If(self.valid & self.ready):
+            m.d.sync += [busy.eq(1), rest.eq(Cat(self.data, 1)), self.tx.eq(0), place.eq(0)]
+        with m.If(busy):
+            m.d.sync += place.eq(place + 1)
+            with m.If(place == self._cycles - 1):
+                m.d.sync += [place.eq(0), self.tx.eq(rest[0]), rest.eq(rest >> 1)]
+                with m.If(~rest.any()):
+                    m.d.sync += [busy.eq(0), self.tx.eq(1)]
+        return m

@@ -1,0 +1,39 @@
+"""Bytes into the link's parts and out of them, cycle by cycle."""
+
+from hw.blocks.memory import READ_LATENCY
+from hw.link.receive import EVENTS
+
+KEY = bytes(range(0xA0, 0xA8))
+PAUSE = 12
+"""Cycles from a byte to the next."""
+
+
+async def feed(ctx, receiver, line: bytes, seen: dict[str, int]):
+    """Bytes into a `FrameReceiver`; adds to what it counts."""
+    for byte in line:
+        ctx.set(receiver.valid, 1)
+        ctx.set(receiver.data, byte)
+        for event in EVENTS:
+            seen[event] += ctx.get(getattr(receiver, event))
+        await ctx.tick()
+        ctx.set(receiver.valid, 0)
+        for _ in range(PAUSE - 1):
+            for event in EVENTS:
+                seen[event] += ctx.get(getattr(receiver, event))
+            await ctx.tick()
+
+
+async def taken(ctx, receiver):
+    """(type, seq, payload) of the frame that waits first; it is taken."""
+    assert ctx.get(receiver.frame)
+    payload = []
+    for place in range(ctx.get(receiver.length)):
+        ctx.set(receiver.place, place)
+        for _ in range(READ_LATENCY):
+            await ctx.tick()
+        payload.append(ctx.get(receiver.byte))
+    header = ctx.get(receiver.type), ctx.get(receiver.seq)
+    ctx.set(receiver.take, 1)
+    await ctx.tick()
+    ctx.set(receiver.take, 0)
+    return *header, bytes(payload)
