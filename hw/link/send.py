@@ -1,0 +1,146 @@
+"""From stored answers to the bytes of frames."""
+
+from amaranth.hdl import Array, Cat, Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..blocks.memory import READ_LATENCY, BlockRam
+from .crc import FrameCrc
+from .frame import CRC_BYTES
+
+ANSWERS = 8
+"""Answers that are kept: as many as commands may be under way."""
+
+ANSWER_MOST = 512
+"""Bytes of an answer, header and payload."""
+
+BLOCK_MOST = 254
+"""Bytes of a block of COBS without a zero."""
+
+
+class FrameSender(wiring.Component):
+    """Keeps the last `ANSWERS` answers, and sends those that are asked for, each in a frame, in the order in which they
+    were asked for.
+
+    An answer's bytes are looked through three times: for the CRC, for the next zero, and when they are sent, a byte
+    every three cycles; so a gap on the line is at most three times `BLOCK_MOST` cycles, and at most three times
+    `ANSWER_MOST` and a few before a frame.
+
+    Parameters
+    ----------
+    key : bytes
+
+    Members
+    -------
+    write : In(1), write_answer : In, write_place : In, write_data : In(8)
+        A byte of an answer: not while it waits.
+    send : In(1), answer : In, length : In
+        Send the answer, of so many bytes; one that waits is sent but once.
+    waits : Out(8)
+        A bit for each answer: it is yet to be sent, or is being sent.
+    valid : Out(1), data : Out(8), ready : In(1)
+        The line's bytes, as to a `hw.link.uart.Transmitter`.
+    """
+
+    def __init__(self, key: bytes):
+        self._key = key
+        super().__init__(
+            {
+                "write": In(1),
+                "write_answer": In(range(ANSWERS)),
+                "write_place": In(range(ANSWER_MOST)),
+                "write_data": In(8),
+                "send": In(1),
+                "answer": In(range(ANSWERS)),
+                "length": In(range(ANSWER_MOST + 1)),
+                "waits": Out(ANSWERS),
+                "valid": Out(1),
+                "data": Out(8),
+                "ready": In(1),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.answers = answers = BlockRam(width=8, depth=ANSWERS * ANSWER_MOST)
+        m.submodules.crc = crc = FrameCrc(self._key)
+        sent = Signal()
+        answer, length = self._queue(m, sent)
+        places = range(ANSWER_MOST + CRC_BYTES + 1)
+        place, begin, end = (Signal(places, name=name) for name in ("place", "begin", "end"))
+        whole, byte, here, wait = Signal.like(place), Signal(8), Signal(), Signal(range(READ_LATENCY + 1))
+        m.d.comb += [
+            answers.write.eq(self.write),
+            answers.write_address.eq(Cat(self.write_place, self.write_answer)),
+            answers.write_data.eq(self.write_data),
+            answers.address.eq(Cat(place[: len(self.write_place)], answer)),
+            whole.eq(length + CRC_BYTES),
+            byte.eq(Mux(place < length, answers.data, crc.crc.word_select((place - length)[:2], 8))),
+            crc.data.eq(byte),
+            here.eq(wait == 0),  # the byte is that of the place
+        ]
+        with m.If(~here):
+            m.d.sync += wait.eq(wait - 1)
+
+        def look(at):
+            return [place.eq(at), wait.eq(READ_LATENCY)]
+
+        def give(value, following):
+            m.d.comb += [self.valid.eq(1), self.data.eq(value)]
+            with m.If(self.ready):
+                m.next = following
+
+        with m.FSM():
+            with m.State("idle"):
+                m.d.comb += crc.start.eq(1)
+                m.d.sync += [*look(0), begin.eq(0)]
+                with m.If(self.waits.any()):
+                    m.next = "crc"
+            with m.State("crc"):
+                with m.If(here & (place == length)):
+                    m.d.sync += look(0)
+                    m.next = "front"
+                with m.Elif(here & crc.ready):
+                    m.d.comb += crc.valid.eq(1)
+                    m.d.sync += look(place + 1)
+            with m.State("front"):
+                give(0, "block")
+            with m.State("block"):  # where does it end?
+                with m.If(here):
+                    m.d.sync += look(place + 1)
+                    with m.If((place == whole) | (place - begin == BLOCK_MOST) | (byte == 0)):
+                        m.d.sync += [end.eq(place), *look(begin)]
+                        m.next = "code"
+            with m.State("code"):
+                give(end - begin + 1, "bytes")
+            with m.State("bytes"):
+                with m.If(here & (place != end)):
+                    give(byte, "bytes")
+                    with m.If(self.ready):
+                        m.d.sync += look(place + 1)
+                with m.Elif(here):
+                    m.next = "block"
+                    with m.If(end == whole):
+                        m.next = "back"
+                    with m.Elif(end - begin == BLOCK_MOST):
+                        m.d.sync += begin.eq(end)
+                    with m.Else():  # a zero, which the block stands for
+                        m.d.sync += [begin.eq(end + 1), *look(end + 1)]
+            with m.State("back"):
+                give(0, "idle")
+                m.d.comb += sent.eq(self.ready)
+        return m
+
+    def _queue(self, m, sent):
+        """The answer that is sent next, or just now, and its length."""
+        order = Array(Signal(range(ANSWERS), name=f"order_{n}") for n in range(ANSWERS))
+        lengths = Array(Signal.like(self.length, name=f"length_{n}") for n in range(ANSWERS))
+        next_in, next_out = Signal(range(ANSWERS)), Signal(range(ANSWERS))
+        answer, length = Signal.like(self.answer), Signal.like(self.length)
+        m.d.comb += [answer.eq(order[next_out]), length.eq(lengths[answer])]
+        with m.If(self.send & ~self.waits.bit_select(self.answer, 1)):
+            m.d.sync += [order[next_in].eq(self.answer), lengths[self.answer].eq(self.length)]
+            m.d.sync += [next_in.eq(next_in + 1), self.waits.bit_select(self.answer, 1).eq(1)]
+        with m.If(sent):
+            m.d.sync += [next_out.eq(next_out + 1), self.waits.bit_select(answer, 1).eq(0)]
+        return answer, length
