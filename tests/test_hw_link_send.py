@@ -74,9 +74,19 @@ def test_answers_are_sent_in_their_order_each_once_and_again_when_asked(rng):
         sent = await line(ctx, dut, rng)
         assert [unpacked(coded, KEY) for coded in sent.split(b"\0") if coded] == [kept[n] for n in order]
         for number in (4, 3):
-            await asked(ctx, dut, number, HEADER.size + number)
+            await asked(ctx, dut, number, 0)
         assert ctx.get(dut.waits) == 1 << 4 | 1 << 3
         sent = await line(ctx, dut, rng)
         assert [unpacked(coded, KEY) for coded in sent.split(b"\0") if coded] == [kept[4], kept[3]]
+
+    simulate(dut, bench)
+
+
+def test_what_was_never_stored_is_not_sent():
+    dut = FrameSender(KEY)
+
+    async def bench(ctx):
+        await asked(ctx, dut, 2, 0)
+        assert not ctx.get(dut.waits)
 
     simulate(dut, bench)

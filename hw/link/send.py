@@ -35,7 +35,8 @@ class FrameSender(wiring.Component):
     write : In(1), write_answer : In, write_place : In, write_data : In(8)
         A byte of an answer: not while it waits.
     send : In(1), answer : In, length : In
-        Send the answer, of so many bytes; one that waits is sent but once.
+        Send the answer, of so many bytes; without a length again, if it was sent before. One that waits is sent but
+        once.
     waits : Out(8)
         A bit for each answer: it is yet to be sent, or is being sent.
     valid : Out(1), data : Out(8), ready : In(1)
@@ -138,8 +139,11 @@ class FrameSender(wiring.Component):
         next_in, next_out = Signal(range(ANSWERS)), Signal(range(ANSWERS))
         answer, length = Signal.like(self.answer), Signal.like(self.length)
         m.d.comb += [answer.eq(order[next_out]), length.eq(lengths[answer])]
-        with m.If(self.send & ~self.waits.bit_select(self.answer, 1)):
-            m.d.sync += [order[next_in].eq(self.answer), lengths[self.answer].eq(self.length)]
+        known = (self.length != 0) | (lengths[self.answer] != 0)
+        with m.If(self.send & known & ~self.waits.bit_select(self.answer, 1)):
+            with m.If(self.length != 0):
+                m.d.sync += lengths[self.answer].eq(self.length)
+            m.d.sync += order[next_in].eq(self.answer)
             m.d.sync += [next_in.eq(next_in + 1), self.waits.bit_select(self.answer, 1).eq(1)]
         with m.If(sent):
             m.d.sync += [next_out.eq(next_out + 1), self.waits.bit_select(answer, 1).eq(0)]

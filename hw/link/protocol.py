@@ -1,0 +1,94 @@
+"""What host and device say to each other: one table for circuit, driver and documentation.
+
+A payload is a list of items of `ITEM_BYTES`, lowest byte first. A command's are segments: a head, and the words of a
+write. An answer's are the faults, then a word for each that was read and for each check.
+"""
+
+from enum import IntEnum
+
+from ..registers import ADDRESS_BITS
+from .frame import HEADER
+from .send import ANSWER_MOST
+
+VERSION = 1
+ITEM_BYTES = 5
+ITEMS_MOST = (ANSWER_MOST - HEADER.size) // ITEM_BYTES - 1
+"""Items of an answer behind the faults."""
+
+WINDOW = 8
+"""Commands that may be under way."""
+
+
+class Operation(IntEnum):
+    HELLO = 1
+    ACCESS = 2
+    EXCHANGE = 3
+
+
+OPERATION_TEXT = {
+    Operation.HELLO: "one item, which is given back, and the identity: begins a session, the next seq is one more",
+    Operation.ACCESS: "segments; while steps are run, only what may be read and written then",
+    Operation.EXCHANGE: "segments, between two steps: a run pauses, and goes on afterwards to the same bits",
+}
+
+
+class Kind(IntEnum):
+    """Of a segment."""
+
+    READ = 0
+    WRITE = 1
+    CHECK = 2
+
+
+KIND_TEXT = {
+    Kind.READ: "gives the words",
+    Kind.WRITE: "takes the words behind it, gives nothing",
+    Kind.CHECK: "gives the CRC-32 of the words' items",
+}
+
+COUNT_BITS, KIND_BITS = 8, 2
+HEAD = {"address": ADDRESS_BITS, "across": 1, "kind": KIND_BITS, "unused": 2, "count": COUNT_BITS}
+"""A segment's head, lowest bits first. ``across``: words of one place behind one another, instead of places of one
+word."""
+
+
+class Status(IntEnum):
+    """Of an answer: the lower half of its status byte."""
+
+    DONE = 0
+    REFUSED = 1
+    UNKNOWN = 2
+    MALFORMED = 3
+    STRANGER = 4
+
+
+STATUS_TEXT = {
+    Status.DONE: "all was done",
+    Status.REFUSED: "at least one word was refused; all others were done",
+    Status.UNKNOWN: "no such operation: nothing was done",
+    Status.MALFORMED: "the payload is not what the operation takes, or its answer too long: nothing was done",
+    Status.STRANGER: "there is no session: nothing was done",
+}
+
+BUSY = 0x10
+"""In the status byte: steps are run."""
+
+
+def head(kind: Kind, address: int, count: int, across: bool = False) -> bytes:
+    """A segment's head."""
+    value, low = 0, 0
+    for part, bits in zip((address, across, kind, 0, count), HEAD.values(), strict=True):
+        value |= int(part) << low
+        low += bits
+    return value.to_bytes(ITEM_BYTES, "little")
+
+
+def item(word: int) -> bytes:
+    return word.to_bytes(ITEM_BYTES, "little")
+
+
+def items(payload: bytes) -> list[int]:
+    return [int.from_bytes(payload[n : n + ITEM_BYTES], "little") for n in range(0, len(payload), ITEM_BYTES)]
+
+
+assert sum(HEAD.values()) == 8 * ITEM_BYTES

@@ -1,0 +1,87 @@
+"""A small circuit behind its link, simulated by Verilator: bytes in, bytes out."""
+
+import ctypes
+import functools
+from pathlib import Path
+
+from amaranth.hdl import Module
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+from link_objects import KEY, PAUSE
+
+from hw.core import Core
+from hw.link.device import Device
+from hw.link.frame import Frame, unpacked
+from hw.parameters import Parameters
+from hw.registers import MAGIC
+from hw.verilog import convert
+from sim.machines import BUILD
+from sim.verilated import library, opened
+
+SHIM = Path(__file__).with_name("linked.cpp")
+SMALL = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1)
+IDENTITY = [MAGIC, 0x123456789]
+ROOM = 100_000
+QUIET = 5000
+"""Cycles after which nothing more comes: what the longest command takes, and the CRC of its answer."""
+
+
+class Linked(wiring.Component):
+    def __init__(self):
+        super().__init__({"valid": In(1), "data": In(8), "out_valid": Out(1), "out_data": Out(8)})
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.core = core = Core(SMALL)
+        m.submodules.device = device = Device(key=KEY, identity=IDENTITY, state=SMALL.formats.state)
+        for name in ("request", "write", "address", "write_data"):
+            m.d.comb += getattr(core, name).eq(getattr(device, f"port_{name}"))
+        for name in ("answer", "error", "read_data"):
+            m.d.comb += getattr(device, f"port_{name}").eq(getattr(core, name))
+        m.d.comb += [
+            device.busy.eq(core.busy),
+            device.valid.eq(self.valid),
+            device.data.eq(self.data),
+            self.out_valid.eq(device.out_valid),
+            self.out_data.eq(device.out_data),
+            device.out_ready.eq(1),
+        ]
+        return m
+
+
+@functools.cache
+def verilog() -> str:
+    return convert(Linked(), "linked")
+
+
+class Line:
+    """The simulated circuit's two ends of the line."""
+
+    def __init__(self):
+        shared = opened(library("linked", verilog(), SHIM, folder=BUILD))
+        self._run, self._delete = shared.linked_run, shared.linked_delete
+        shared.linked_new.restype = ctypes.c_void_p
+        self._run.restype = ctypes.c_long
+        number, pointer = ctypes.c_long, ctypes.c_char_p
+        self._run.argtypes = [ctypes.c_void_p, pointer, number, number, number, pointer, number]
+        self._delete.argtypes = [ctypes.c_void_p]
+        self._handle = shared.linked_new()
+
+    def close(self):
+        self._delete(self._handle)
+
+    def send(self, line: bytes, cycles: int) -> bytes:
+        """What comes out while these bytes go in, and so many cycles after."""
+        out = ctypes.create_string_buffer(ROOM)
+        came = self._run(self._handle, line, len(line), PAUSE, cycles, out, ROOM)
+        assert came <= ROOM
+        return out.raw[:came]
+
+    def exchange(self, *commands: Frame) -> list[Frame]:
+        """The answers to commands, each sent when nothing comes any more for the one before."""
+        out = b""
+        for command in commands:
+            out += self.send(command.packed(KEY), QUIET)
+            while more := self.send(b"", QUIET):
+                out += more
+        return [unpacked(coded, KEY) for coded in out.split(b"\0") if coded]

@@ -1,0 +1,106 @@
+"""Commands on a real circuit: what is asked for is done, once and in order, or refused with a word."""
+
+import zlib
+
+import pytest
+from linked import IDENTITY, SMALL, Line
+
+from hw.link.frame import ANSWER, Frame
+from hw.link.protocol import ITEM_BYTES, ITEMS_MOST, Kind, Operation, Status, head, item, items
+from hw.registers import MAGIC, Control, Map, Region
+
+
+def exchanged(*commands: Frame) -> list[Frame]:
+    """A circuit's answers, from its reset on."""
+    line = Line()
+    answers = line.exchange(*commands)
+    line.close()
+    return answers
+
+
+def hello(seq=0, nonce=7):
+    return Frame(Operation.HELLO, seq, payload=item(nonce))
+
+
+def control(register):
+    return Map(SMALL).address(Region.CONTROL, 0, register)
+
+
+def read(address, count=1, across=False):
+    return head(Kind.READ, address, count, across)
+
+
+def write(address, *words, across=False):
+    return head(Kind.WRITE, address, len(words), across) + b"".join(map(item, words))
+
+
+def access(seq, *segments, operation=Operation.ACCESS):
+    return Frame(operation, seq, payload=b"".join(segments))
+
+
+def test_a_greeting_tells_who_is_there():
+    (answer,) = exchanged(hello(9, nonce=0xABCDE))
+    payload = b"".join(map(item, (0, 0xABCDE, *IDENTITY)))
+    assert answer == Frame(Operation.HELLO | ANSWER, 9, Status.DONE, payload)
+
+
+def test_what_is_written_is_read_and_checked(rng):
+    words = [int(w) for w in rng.integers(0, 1 << 36, 12)]
+    x, v = (Map(SMALL).address(Region.NODE, name, 3) for name in ("x_x", "v_x"))
+    _, wrote, got = exchanged(
+        hello(),
+        access(1, write(x, *words[:6], across=True), write(x + 1, *words[6:])),
+        access(2, read(v, 3, across=True), read(x + 1, 6), head(Kind.CHECK, x + 1, 6), read(control(Control.MAGIC))),
+    )
+    assert wrote == Frame(Operation.ACCESS | ANSWER, 1, Status.DONE, item(0))
+    check = zlib.crc32(b"".join(map(item, words[6:])))
+    assert items(got.payload) == [0, *words[3:6], *words[6:], check, MAGIC]
+    assert (got.seq, got.status) == (2, Status.DONE)
+
+
+def test_a_refused_word_is_told_and_the_others_done():
+    load = Map(SMALL).address(Region.NODE, "load_x", 0)
+    _, wrote, got = exchanged(
+        hello(), access(1, write(control(Control.MAGIC), 5), write(load, 8)),
+        access(2, read(load), read(control(Control.REFUSED))))
+    assert (wrote.status, got.status, items(got.payload)) == (Status.REFUSED, Status.DONE, [0, 8, 1])
+
+
+X = Map(SMALL).address(Region.NODE, "x_x", 0)
+
+
+@pytest.mark.parametrize(("frame", "status"), [
+    (access(1, write(X, 5), read(X)[:-1]), Status.MALFORMED),
+    (access(1, write(X, 5), write(X, 6, 7)[:-1]), Status.MALFORMED),
+    (access(1, write(X, 5), write(X, 6, 7)[:-ITEM_BYTES]), Status.MALFORMED),
+    (access(1, write(X, 5), head(3, X, 1)), Status.MALFORMED),
+    (access(1, write(X, 5), read(X, 16), *[read(X, 14)] * 6, read(X, 1)), Status.MALFORMED),
+    (access(1, write(X, 5), operation=9), Status.UNKNOWN),
+])
+def test_a_payload_that_is_not_what_it_should_be_does_nothing(frame, status):
+    _, answer, after = exchanged(hello(), frame, access(2, read(X)))
+    assert answer == Frame(frame.type | ANSWER, 1, status, item(0))
+    assert items(after.payload) == [0, 0]
+
+
+def test_an_answer_may_be_as_long_as_it_says():
+    _, answer = exchanged(hello(), access(1, read(X, 16), *[read(X, 14)] * 6))
+    assert len(items(answer.payload)) == ITEMS_MOST + 1 and answer.status == Status.DONE
+
+
+def test_before_a_greeting_nothing_is_done():
+    stranger, _, got = exchanged(access(0, write(X, 5)), hello(7), access(8, read(X)))
+    assert stranger == Frame(Operation.ACCESS | ANSWER, 0, Status.STRANGER, item(0))
+    assert items(got.payload) == [0, 0]
+
+
+def test_each_command_is_done_once_and_in_order():
+    """One that comes again is answered again; one too early is dropped."""
+    add = [access(n, write(X, 10 + n), read(X)) for n in range(1, 4)]
+    answers = exchanged(hello(), add[0], add[2], add[0], add[1], add[0], add[2], access(4, read(X)))
+    assert [(a.seq, items(a.payload)[1]) for a in answers[1:]] == [(1, 11), (1, 11), (2, 12), (1, 11), (3, 13), (4, 13)]
+
+
+def test_a_new_greeting_begins_anew():
+    answers = exchanged(hello(), access(1, write(X, 5)), hello(100), access(101, read(X)), access(2, read(X)))
+    assert [a.seq for a in answers] == [0, 1, 100, 101] and items(answers[-1].payload) == [0, 5]
