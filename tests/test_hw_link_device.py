@@ -1,13 +1,18 @@
 """Commands on a real circuit: what is asked for is done, once and in order, or refused with a word."""
 
+import itertools
 import zlib
 
+import numpy as np
 import pytest
+from integer_objects import random_image
 from linked import IDENTITY, SMALL, Line
 
 from hw.link.frame import ANSWER, Frame
-from hw.link.protocol import ITEM_BYTES, ITEMS_MOST, Kind, Operation, Status, head, item, items
+from hw.link.protocol import BUSY, ITEM_BYTES, ITEMS_MOST, Kind, Operation, Status, head, item, items
 from hw.registers import MAGIC, Control, Map, Region
+from sim.native import NativeMachine
+from sim.program import Program
 
 
 def exchanged(*commands: Frame) -> list[Frame]:
@@ -104,3 +109,53 @@ def test_each_command_is_done_once_and_in_order():
 def test_a_new_greeting_begins_anew():
     answers = exchanged(hello(), access(1, write(X, 5)), hello(100), access(101, read(X)), access(2, read(X)))
     assert [a.seq for a in answers] == [0, 1, 100, 101] and items(answers[-1].payload) == [0, 5]
+
+
+STEPS = 200
+
+
+def loaded(image):
+    """Commands that load an image, from a greeting on."""
+    program = Program(image, SMALL)
+    writes = itertools.chain(program.load(), program.start(image.v, image.x))
+    yield hello()
+    for seq in itertools.count(1):
+        some = list(itertools.islice(writes, 50))
+        if not some:
+            return
+        yield access(seq, *(write(address, word) for address, word in some))
+
+
+def state(answer) -> tuple[np.ndarray, ...]:
+    """(N, 3) positions and forces that `LOOK` asked for."""
+    words = np.array(items(answer.payload)[1:]).reshape(2, 3, -1)
+    top = 1 << SMALL.formats.state - 1
+    return tuple(((part ^ top) - top).T for part in words)
+
+
+def test_a_run_that_is_looked_at_shows_whole_steps_and_ends_with_the_same_bits(rng):
+    image = random_image(rng, nodes=12, edges=16, materials=2, tables=1)
+    model, line = NativeMachine(image), Line()
+    names = [f"{quantity}_{axis}" for quantity in ("x", "force") for axis in "xyz"]
+    look = [read(Map(SMALL).address(Region.NODE, name), image.nodes) for name in names]
+    commands = list(loaded(image))
+    assert all(answer.status == Status.DONE for answer in line.exchange(*commands))
+    seq = len(commands)
+    (started,) = line.exchange(access(seq, write(control(Control.RUN), STEPS)))
+    assert started.status & BUSY
+    seen = []
+    while not seen or seen[-1].status & BUSY:
+        seq += 1
+        seen += line.exchange(access(seq % 256, *look, operation=Operation.EXCHANGE))
+    line.close()
+
+    expected = []
+    for _ in range(STEPS):
+        model.step(1)
+        expected.append((model.x.copy(), model.force.copy()))
+    number = 0
+    for answer in seen:
+        x, force = state(answer)
+        number = next(n for n in range(number, STEPS) if np.array_equal(expected[n][0], x))
+        assert np.array_equal(expected[number][1], force)
+    assert number == STEPS - 1 and len(seen) > 4
