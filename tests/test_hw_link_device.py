@@ -6,7 +6,8 @@ import zlib
 import numpy as np
 import pytest
 from integer_objects import random_image
-from linked import IDENTITY, SMALL, Line
+from link_objects import KEY
+from linked import IDENTITY, QUIET, SMALL, Line
 
 from hw.link.frame import ANSWER, Frame
 from hw.link.protocol import BUSY, ITEM_BYTES, ITEMS_MOST, Kind, Operation, Status, head, item, items
@@ -159,3 +160,19 @@ def test_a_run_that_is_looked_at_shows_whole_steps_and_ends_with_the_same_bits(r
         number = next(n for n in range(number, STEPS) if np.array_equal(expected[n][0], x))
         assert np.array_equal(expected[number][1], force)
     assert number == STEPS - 1 and len(seen) > 4
+
+
+def test_a_run_that_ends_while_it_is_paused_is_over(rng):
+    """The pause begins anywhere in the last steps: nothing may be taken for the number of steps done but that."""
+    image, line = random_image(rng, nodes=12, edges=16, materials=2, tables=1), Line()
+    commands = list(loaded(image))
+    line.exchange(*commands)
+    for seq, gap in enumerate(range(0, 1500, 8)):
+        first = len(commands) + 2 * seq
+        run = access(first % 256, write(control(Control.RUN), 3))
+        look = access((first + 1) % 256, read(control(Control.STEPS_DONE)), operation=Operation.EXCHANGE)
+        line.send(run.packed(KEY), gap)
+        line.send(look.packed(KEY), 3 * QUIET)
+    answers = line.exchange(access((first + 2) % 256, read(control(Control.BUSY))))
+    line.close()
+    assert items(answers[0].payload)[1] == 0

@@ -123,7 +123,7 @@ class Device(wiring.Component):
         m.next = "emit"
 
     def _ask(self, m, register, following, write=None):
-        """An access to a control register: in the next state until the answer has come, then in another."""
+        """An access to a control register; the next state waits for its answer."""
         m.d.comb += [self.port_request.eq(1), self.port_address.eq(join(Region.CONTROL, 0, register, 0))]
         if write is not None:
             m.d.comb += [self.port_write.eq(1), self.port_write_data.eq(write)]
@@ -253,12 +253,15 @@ class Device(wiring.Component):
     def _pauses(self, m):
         """A run is stopped with its step, and what is left of it is run afterwards."""
         with m.State("pause"):
-            self._ask(m, Control.STOP, "paused", write=1)
+            self._ask(m, Control.STOP, "stopping", write=1)
+        with m.State("stopping"):
+            with m.If(self.port_answer):
+                m.next = "paused"
         with m.State("paused"):
             with m.If(~self.busy):
                 self._ask(m, Control.STEPS_DONE, "counted")
         with m.State("counted"):
-            with m.If(self.port_answer & ~self.port_error):
+            with m.If(self.port_answer):
                 done = self.port_read_data[: len(self._steps)]
                 m.d.sync += self._left.eq(Mux(self._steps > done, self._steps - done, 0))
                 m.next = "segment"

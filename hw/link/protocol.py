@@ -7,20 +7,20 @@ write. An answer's are the faults, then a word for each that was read and for ea
 from enum import IntEnum
 
 from ..registers import ADDRESS_BITS
-from .frame import HEADER
-from .send import ANSWER_MOST
+from .frame import GREETING, HEADER
+from .send import ANSWER_MOST, ANSWERS
 
 VERSION = 1
 ITEM_BYTES = 5
 ITEMS_MOST = (ANSWER_MOST - HEADER.size) // ITEM_BYTES - 1
 """Items of an answer behind the faults."""
 
-WINDOW = 8
+WINDOW = ANSWERS
 """Commands that may be under way."""
 
 
 class Operation(IntEnum):
-    HELLO = 1
+    HELLO = GREETING
     ACCESS = 2
     EXCHANGE = 3
 

@@ -9,7 +9,7 @@ BAUD_LEAST, BAUD_MOST = 115_200, 3_000_000
 LEAST_CYCLES = 8
 """Cycles a bit needs: its three votes have to be taken near its middle."""
 MOST_ERROR = 0.015
-"""By how much the rate may miss the one asked for. A receiver stands 2 % and more."""
+"""By how much the rate may miss the one asked for. A receiver stands 2 %."""
 
 
 def cycles_per_bit(clock_hz: float, baud: int) -> int:
