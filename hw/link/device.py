@@ -1,29 +1,19 @@
 """Commands that came, done one after the other on the host port, and their answers."""
 
-from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal
+from amaranth.hdl import Array, Const, Module, Mux, Signal
 from amaranth.lib import wiring
-from amaranth.lib.enum import Enum
 from amaranth.lib.wiring import In, Out
 
-from ..blocks.memory import READ_LATENCY
 from ..host import host_signature
-from ..registers import INDEX_BITS, Control, Region, join
-from .frame import ANSWER, CRC, HEADER
-from .protocol import BUSY, HEAD, ITEM_BYTES, ITEMS_MOST, WINDOW, Kind, Operation, Status
-from .receive import FrameReceiver
+from ..registers import INDEX_BITS, REGION_BITS, Control, Region, join
+from .emit import Emitter
+from .frame import ANSWER, HEADER
+from .pause import Pause
+from .protocol import BUSY, ITEM_BYTES, WINDOW, Operation, Status
+from .receive import EVENTS, FrameReceiver
+from .registers import LINK, LinkRegisters
 from .send import FrameSender
-
-
-class After(Enum):
-    """Where it goes on behind an item of the payload, or of the answer."""
-
-    GREET = 0
-    HEAD = 1
-    WORD = 2
-    WORDS = 3
-    SEGMENT = 4
-    IDENTITY = 5
-    SEAL = 6
+from .walk import Walker
 
 
 class Device(wiring.Component):
@@ -53,7 +43,7 @@ class Device(wiring.Component):
     """
 
     def __init__(self, *, key: bytes, identity: list[int], state: int):
-        self._key, self._identity = key, identity
+        self._key, self._identity, self._state = key, identity, state
         port = {f"port_{name}": member.flip() for name, member in host_signature(state).items()}
         super().__init__(
             {
@@ -73,236 +63,176 @@ class Device(wiring.Component):
         m = Module()
         m.submodules.receiver = self._receiver = receiver = FrameReceiver(self._key)
         m.submodules.sender = self._sender = sender = FrameSender(self._key)
+        m.submodules.emitter = self._emitter = emitter = Emitter()
+        m.submodules.walker = self._walker = walker = Walker(self._state)
+        m.submodules.pauser = self._pauser = pauser = Pause(self._state)
+        m.submodules.registers = self._registers = registers = LinkRegisters(self._state)
+        self._greets = receiver.type == Operation.HELLO
         m.d.comb += [
             *(getattr(receiver, name).eq(getattr(self, name)) for name in ("valid", "data", "error", "broken")),
             self.out_valid.eq(sender.valid),
             self.out_data.eq(sender.data),
             sender.ready.eq(self.out_ready),
+            sender.answer.eq(receiver.seq),
+            sender.write_answer.eq(receiver.seq),
+            receiver.place.eq(walker.place),
+            walker.greets.eq(self._greets),
+            walker.length.eq(receiver.length),
+            walker.byte.eq(receiver.byte),
+            walker.item_ready.eq(emitter.ready),
+            pauser.noted.eq(walker.noted),
+            pauser.steps.eq(walker.steps),
+            pauser.busy.eq(self.busy),
+            registers.busy.eq(self.busy),
+            *(getattr(registers, event).eq(getattr(receiver, event)) for event in EVENTS),
         ]
-        self._registers(m)
-        with m.FSM():
-            self._choice(m)
-            self._segments(m)
-            self._words(m)
-            self._pauses(m)
-            self._endings(m)
+        self._faults = Signal()  # they are asked for
+        self._port(m)
+        self._commands(m)
         return m
 
-    def _registers(self, m):
-        self._session, self._expected = Signal(), Signal(8)
-        self._status, self._refused = Signal(Status), Signal()
-        self._dry = Signal()  # the payload is looked through before anything is done
-        self._position = Signal(range(2048))  # in the payload; behind it, if a write lacks words
-        self._given = Signal(range(1 << 15))  # items of the answer
-        self._item, self._number, self._wait = Signal(8 * ITEM_BYTES), Signal(3), Signal(range(READ_LATENCY + 1))
-        self._segment = {name: Signal(bits, name=name) for name, bits in HEAD.items()}
-        self._steps, self._left = Signal(32), Signal(32)
-        self._after, self._place = Signal(After), Signal.like(self._sender.write_place)
-        m.submodules.crc = self._crc = CRC(data_width=8).create()
+    def _port(self, m):
+        """Who of them uses the host port does so alone; the link's own registers answer beside it."""
+        walker, pauser, registers = self._walker, self._pauser, self._registers
+        own = Signal()
         m.d.comb += [
-            self._receiver.place.eq(self._position),
-            self._sender.answer.eq(self._receiver.seq),
-            self._sender.write_answer.eq(self._receiver.seq),
-            self._sender.write_place.eq(self._place),
-            self._crc.data.eq(self._item),
+            own.eq(walker.port_address[-REGION_BITS:] == LINK),
+            registers.request.eq(walker.port_request & own),
+            registers.write.eq(walker.port_write),
+            registers.index.eq(walker.port_address[:INDEX_BITS]),
+            registers.data.eq(walker.port_write_data),
+            self.port_request.eq(pauser.port_request | self._faults | walker.port_request & ~own),
         ]
-        m.d.sync += self._wait.eq(Mux(self._wait == 0, 0, self._wait - 1))
+        with m.If(pauser.port_request):
+            for name in ("write", "address", "write_data"):
+                m.d.comb += getattr(self, f"port_{name}").eq(getattr(pauser, f"port_{name}"))
+        with m.Elif(self._faults):
+            m.d.comb += self.port_address.eq(join(Region.CONTROL, 0, Control.FAULTS, 0))
+        with m.Else():
+            for name in ("write", "address", "write_data"):
+                m.d.comb += getattr(self, f"port_{name}").eq(getattr(walker, f"port_{name}"))
+        for name in ("answer", "error", "read_data"):
+            theirs = getattr(self, f"port_{name}")
+            m.d.comb += getattr(pauser, f"port_{name}").eq(theirs)
+            m.d.comb += getattr(walker, f"port_{name}").eq(Mux(registers.answer, getattr(registers, name), theirs))
 
-    def _fails(self, m, status):
+    def _commands(self, m):
+        with m.FSM():
+            self._choice(m)
+            self._doing(m)
+            self._answering(m)
+
+    def _ends(self, m, status):
         m.d.sync += self._status.eq(status)
         m.next = "faults"
 
-    def _gather(self, m, following):
-        """An item of the payload, then another state."""
-        m.d.sync += [self._after.eq(following), self._number.eq(0), self._wait.eq(READ_LATENCY)]
-        m.next = "gather"
-
-    def _emit(self, m, item, following):
-        """An item of the answer, then another state."""
-        m.d.sync += [self._after.eq(following), self._number.eq(0), self._item.eq(item)]
-        m.next = "emit"
-
-    def _ask(self, m, register, following, write=None):
-        """An access to a control register; the next state waits for its answer."""
-        m.d.comb += [self.port_request.eq(1), self.port_address.eq(join(Region.CONTROL, 0, register, 0))]
-        if write is not None:
-            m.d.comb += [self.port_write.eq(1), self.port_write_data.eq(write)]
-        m.next = following
-
     def _choice(self, m):
         """What becomes of a command, by its seq."""
-        receiver, sender = self._receiver, self._sender
+        receiver, sender, registers, greets = self._receiver, self._sender, self._registers, self._greets
+        self._session, self._expected, self._status = Signal(), Signal(8), Signal(Status)
         early, free = Signal(8), Signal()
         m.d.comb += early.eq(receiver.seq - self._expected)
         m.d.comb += free.eq(~sender.waits.bit_select(receiver.seq[: len(sender.answer)], 1))
-        greets = receiver.type == Operation.HELLO
         with m.State("idle"):
-            m.d.sync += [self._position.eq(0), self._given.eq(0), self._dry.eq(1), self._left.eq(0)]
-            m.d.sync += [self._status.eq(Status.DONE), self._refused.eq(0), self._place.eq(HEADER.size + ITEM_BYTES)]
-            with m.If(receiver.frame & (greets | ~self._session | (early == 0))):
+            m.d.comb += [self._emitter.begin.eq(1), self._emitter.at.eq(HEADER.size + ITEM_BYTES)]
+            m.d.sync += self._status.eq(Status.DONE)
+            with m.If(registers.halt):
+                m.d.comb += self._pauser.halt.eq(1)
+                m.next = "halting"
+            with m.Elif(receiver.frame & (greets | ~self._session | (early == 0))):
                 with m.If(free):
-                    m.next = "begin"
+                    m.d.comb += self._walker.look.eq(1)
+                    m.next = "looking"
             with m.Elif(receiver.frame):
-                m.d.comb += [sender.send.eq(early >= 256 - WINDOW), receiver.take.eq(1)]
-        with m.State("begin"):
-            with m.If(greets):
-                m.d.sync += [self._session.eq(1), self._expected.eq(receiver.seq)]
-                with m.If(receiver.length == ITEM_BYTES):
-                    self._gather(m, After.GREET)
+                done = early >= 256 - WINDOW
+                m.d.comb += [sender.send.eq(done), receiver.take.eq(1)]
+                m.d.comb += [registers.duplicates.eq(done), registers.gaps.eq(~done)]
+        with m.State("halting"):
+            with m.If(self._pauser.done):
+                m.d.comb += registers.halted.eq(1)
+                m.next = "idle"
+
+    def _doing(self, m):
+        receiver, walker, pauser = self._receiver, self._walker, self._pauser
+        exchanges = receiver.type == Operation.EXCHANGE
+        with m.State("looking"):
+            with m.If(walker.done):
+                with m.If(~self._greets & ~self._session):
+                    self._ends(m, Status.STRANGER)
+                with m.Elif(~self._greets & ~exchanges & (receiver.type != Operation.ACCESS)):
+                    self._ends(m, Status.UNKNOWN)
+                with m.Elif(walker.bad):
+                    self._ends(m, Status.MALFORMED)
                 with m.Else():
-                    self._fails(m, Status.MALFORMED)
-            with m.Elif(~self._session):
-                self._fails(m, Status.STRANGER)
-            with m.Elif((receiver.type == Operation.ACCESS) | (receiver.type == Operation.EXCHANGE)):
-                m.next = "segment"
-            with m.Else():
-                self._fails(m, Status.UNKNOWN)
-
-    def _segments(self, m):
-        receiver, segment = self._receiver, self._segment
-        kind, count = segment["kind"], segment["count"]
-        with m.State("segment"):
-            m.d.comb += self._crc.start.eq(1)
-            with m.If(self._position == receiver.length):
-                m.d.sync += [self._dry.eq(0), self._position.eq(0)]
-                with m.If(~self._dry):
-                    m.next = "resume"
-                with m.Elif(self._given > ITEMS_MOST):
-                    self._fails(m, Status.MALFORMED)
-                with m.Elif((receiver.type == Operation.EXCHANGE) & self.busy):
-                    m.next = "pause"
-            with m.Elif(self._position + ITEM_BYTES > receiver.length):
-                self._fails(m, Status.MALFORMED)
-            with m.Else():
-                self._gather(m, After.HEAD)
-        with m.State("gather"):
-            with m.If(self._wait == 0):
-                m.d.sync += [self._item.eq(Cat(self._item[8:], receiver.byte)), self._position.eq(self._position + 1)]
-                m.d.sync += [self._number.eq(self._number + 1), self._wait.eq(READ_LATENCY)]
-                with m.If(self._number == ITEM_BYTES - 1):
-                    with m.Switch(self._after):
-                        for after, state in ((After.GREET, "greet"), (After.HEAD, "head"), (After.WORD, "access")):
-                            with m.Case(after):
-                                m.next = state
-        with m.State("head"):
-            m.d.sync += Cat(segment.values()).eq(self._item)
-            m.next = "words"
-            with m.If(self._dry):
-                m.next = "room"
-        with m.State("room"):
-            m.next = "segment"
-            with m.Switch(kind):
-                with m.Case(Kind.READ):
-                    m.d.sync += self._given.eq(self._given + count)
-                with m.Case(Kind.CHECK):
-                    m.d.sync += self._given.eq(self._given + 1)
-                with m.Case(Kind.WRITE):
-                    m.d.sync += self._position.eq(self._position + ITEM_BYTES * count)
-                with m.Default():
-                    self._fails(m, Status.MALFORMED)
-
-    def _words(self, m):
-        address, across, kind, count = (self._segment[name] for name in ("address", "across", "kind", "count"))
-        with m.State("words"):
-            with m.If(count != 0):
-                m.next = "access"
-                with m.If(kind == Kind.WRITE):
-                    self._gather(m, After.WORD)
-            with m.Elif(kind == Kind.CHECK):
-                self._emit(m, self._crc.crc, After.SEGMENT)
-            with m.Else():
-                m.next = "segment"
-        with m.State("access"):
-            m.d.comb += [self.port_request.eq(1), self.port_write.eq(kind == Kind.WRITE)]
-            m.d.comb += [self.port_address.eq(address), self.port_write_data.eq(self._item)]
-            m.next = "accessed"
-        with m.State("accessed"):
-            with m.If(self.port_answer):
-                m.d.sync += [count.eq(count - 1), self._refused.eq(self._refused | self.port_error)]
-                m.d.sync += address.eq(address + Mux(across, 1 << INDEX_BITS, 1))
-                m.next = "words"
-                with m.If(kind == Kind.READ):
-                    self._emit(m, self.port_read_data, After.WORDS)
-                with m.Elif(kind == Kind.CHECK):
-                    m.d.sync += [self._item.eq(self.port_read_data), self._number.eq(0)]
-                    m.next = "sum"
-                with m.Elif(~self.port_error):
-                    self._note(m, address)
-        with m.State("sum"):
-            m.d.comb += self._crc.valid.eq(1)
-            m.d.sync += [self._item.eq(self._item >> 8), self._number.eq(self._number + 1)]
-            with m.If(self._number == ITEM_BYTES - 1):
-                m.next = "words"
-        with m.State("emit"):
-            m.d.comb += [self._sender.write.eq(1), self._sender.write_data.eq(self._item)]
-            m.d.sync += [self._item.eq(self._item >> 8), self._number.eq(self._number + 1)]
-            m.d.sync += self._place.eq(self._place + 1)
-            with m.If(self._number == ITEM_BYTES - 1):
-                m.d.sync += self._number.eq(0)
-                with m.Switch(self._after):
-                    for after in (After.WORDS, After.SEGMENT, After.IDENTITY, After.SEAL):
-                        with m.Case(after):
-                            m.next = after.name.lower()
-
-    def _note(self, m, address):
-        """What the host says about the run itself holds, whatever was to go on."""
-        for register, steps in ((Control.RUN, self._item), (Control.STOP, 0)):
-            with m.If(address == join(Region.CONTROL, 0, register, 0)):
-                m.d.sync += [self._steps.eq(steps), self._left.eq(0)]
-
-    def _pauses(self, m):
-        """A run is stopped with its step, and what is left of it is run afterwards."""
-        with m.State("pause"):
-            self._ask(m, Control.STOP, "stopping", write=1)
-        with m.State("stopping"):
-            with m.If(self.port_answer):
-                m.next = "paused"
-        with m.State("paused"):
-            with m.If(~self.busy):
-                self._ask(m, Control.STEPS_DONE, "counted")
-        with m.State("counted"):
-            with m.If(self.port_answer):
-                done = self.port_read_data[: len(self._steps)]
-                m.d.sync += self._left.eq(Mux(self._steps > done, self._steps - done, 0))
-                m.next = "segment"
-        with m.State("resume"):
-            m.next = "faults"
-            with m.If(self._left != 0):
-                m.d.sync += self._steps.eq(self._left)
-                self._ask(m, Control.RUN, "resumed", write=self._left)
-        with m.State("resumed"):
-            with m.If(self.port_answer):
+                    m.next = "walk"
+                    with m.If(self._greets):
+                        m.d.sync += [self._session.eq(1), self._expected.eq(receiver.seq)]
+                    with m.If(exchanges & self.busy):
+                        m.d.comb += pauser.pause.eq(1)
+                        m.next = "pausing"
+        with m.State("pausing"):
+            with m.If(pauser.done):
+                m.next = "walk"
+        with m.State("walk"):
+            m.d.comb += walker.walk.eq(1)
+            m.next = "walking"
+        with m.State("walking"):
+            with m.If(walker.done):
+                m.next = "faults"
+                with m.If(self._greets):
+                    m.next = "identity"
+                with m.If(walker.refused):
+                    m.d.sync += self._status.eq(Status.REFUSED)
+                with m.If(exchanges):
+                    m.d.comb += pauser.resume.eq(1)
+                    m.next = "resuming"
+        with m.State("resuming"):
+            with m.If(pauser.done):
                 m.next = "faults"
 
-    def _endings(self, m):
-        receiver, sender = self._receiver, self._sender
-        told, length = Signal(range(len(self._identity) + 1)), Signal.like(sender.length)
-        identity = Array(Const(item, len(self._item)) for item in [*self._identity, 0])
-        with m.State("greet"):
-            m.d.sync += told.eq(0)
-            self._emit(m, self._item, After.IDENTITY)
+    def _answering(self, m):
+        """Identity, faults and header; what was read stands in the answer already."""
+        receiver, sender, emitter, walker = self._receiver, self._sender, self._emitter, self._walker
+        told, faults, length = Signal(range(len(self._identity) + 1)), Signal(self._state), Signal.like(sender.length)
+        gives, heads, number, header = Signal(), Signal(), Signal(range(HEADER.size)), Signal(8)
+        item, identity = Signal.like(emitter.item), Array(Const(part, len(emitter.item)) for part in self._identity)
+        payload, status = length - HEADER.size, self._status | Mux(self.busy, BUSY, 0)
+        m.d.comb += [
+            item.eq(faults),
+            emitter.valid.eq(walker.item_valid | gives),
+            emitter.item.eq(Mux(gives, item, walker.item)),
+            sender.write.eq(emitter.write | heads),
+            sender.write_place.eq(Mux(heads, number, emitter.place)),
+            sender.write_data.eq(Mux(heads, header, emitter.data)),
+            header.eq(Array([receiver.type | ANSWER, receiver.seq, status, 0, payload[:8], payload[8:]])[number]),
+        ]
         with m.State("identity"):
-            m.d.sync += told.eq(told + 1)
-            m.next = "faults"
-            with m.If(told != len(self._identity)):
-                self._emit(m, identity[told], After.IDENTITY)
+            m.d.comb += [item.eq(identity[told]), gives.eq(1)]
+            with m.If(emitter.ready):
+                m.d.sync += told.eq(told + 1)
+                with m.If(told == len(self._identity) - 1):
+                    m.next = "faults"
         with m.State("faults"):
-            self._ask(m, Control.FAULTS, "faulty")
+            m.d.sync += told.eq(0)
+            with m.If(emitter.ready):
+                m.d.comb += self._faults.eq(1)
+                m.next = "faulty"
         with m.State("faulty"):
+            m.d.comb += emitter.at.eq(HEADER.size)
             with m.If(self.port_answer):
-                m.d.sync += [length.eq(self._place), self._place.eq(HEADER.size)]
-                self._emit(m, self.port_read_data, After.SEAL)
+                m.d.sync += [faults.eq(self.port_read_data), length.eq(emitter.place), number.eq(0)]
+                m.d.comb += emitter.begin.eq(1)
+                m.next = "seal"
         with m.State("seal"):
-            m.d.sync += self._place.eq(0)
-            m.next = "header"
-        payload, refused = length - HEADER.size, self._refused & (self._status == Status.DONE)
-        status = Mux(refused, Status.REFUSED, self._status) | Mux(self.busy, BUSY, 0)
-        header = Array([receiver.type | ANSWER, receiver.seq, status, 0, payload[:8], payload[8:]])
+            m.d.comb += gives.eq(1)
+            with m.If(emitter.ready):
+                m.next = "header"
         with m.State("header"):
-            m.d.comb += [sender.write.eq(1), sender.write_data.eq(header[self._number])]
-            m.d.sync += [self._number.eq(self._number + 1), self._place.eq(self._place + 1)]
-            with m.If(self._number == HEADER.size - 1):
-                m.next = "send"
+            with m.If(emitter.ready):
+                m.d.comb += heads.eq(1)
+                m.d.sync += number.eq(number + 1)
+                with m.If(number == HEADER.size - 1):
+                    m.next = "send"
         with m.State("send"):
             m.d.comb += [sender.send.eq(1), sender.length.eq(length), receiver.take.eq(1)]
             m.d.sync += self._expected.eq(self._expected + self._session)

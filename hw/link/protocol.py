@@ -6,6 +6,9 @@ write. An answer's are the faults, then a word for each that was read and for ea
 
 from enum import IntEnum
 
+from golden import records
+from golden.qformat import BIT, unsigned
+
 from ..registers import ADDRESS_BITS
 from .frame import GREETING, HEADER
 from .send import ANSWER_MOST, ANSWERS
@@ -46,10 +49,17 @@ KIND_TEXT = {
     Kind.CHECK: "gives the CRC-32 of the words' items",
 }
 
-COUNT_BITS, KIND_BITS = 8, 2
-HEAD = {"address": ADDRESS_BITS, "across": 1, "kind": KIND_BITS, "unused": 2, "count": COUNT_BITS}
-"""A segment's head, lowest bits first. ``across``: words of one place behind one another, instead of places of one
-word."""
+HEAD = {
+    "address": unsigned(ADDRESS_BITS, 0),
+    "across": BIT,
+    "kind": unsigned(2, 0),
+    "unused": unsigned(2, 0),
+    "count": unsigned(8, 0),
+}
+"""A segment's head, a record as in `golden.records`. ``across``: words of one place behind one another, instead of
+places of one word."""
+
+COUNT_MOST = HEAD["count"].raw_max
 
 
 class Status(IntEnum):
@@ -76,11 +86,8 @@ BUSY = 0x10
 
 def head(kind: Kind, address: int, count: int, across: bool = False) -> bytes:
     """A segment's head."""
-    value, low = 0, 0
-    for part, bits in zip((address, across, kind, 0, count), HEAD.values(), strict=True):
-        value |= int(part) << low
-        low += bits
-    return value.to_bytes(ITEM_BYTES, "little")
+    fields = {"address": address, "across": int(across), "kind": kind, "unused": 0, "count": count}
+    return item(records.pack(HEAD, fields))
 
 
 def item(word: int) -> bytes:
@@ -91,4 +98,4 @@ def items(payload: bytes) -> list[int]:
     return [int.from_bytes(payload[n : n + ITEM_BYTES], "little") for n in range(0, len(payload), ITEM_BYTES)]
 
 
-assert sum(HEAD.values()) == 8 * ITEM_BYTES
+assert records.width(HEAD) == 8 * ITEM_BYTES

@@ -1,0 +1,48 @@
+"""Items into an answer."""
+
+from amaranth.hdl import Cat, Module, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from .protocol import ITEM_BYTES
+from .send import ANSWER_MOST
+
+
+class Emitter(wiring.Component):
+    """Writes items one behind the other, lowest byte first. Throughput: an item every `ITEM_BYTES` + 1 cycles.
+
+    Members
+    -------
+    begin : In(1), at : In
+        The next item goes there.
+    valid : In(1), item : In, ready : Out(1)
+        An item is taken in a cycle in which both are 1. While ``ready``, all that were taken have been written.
+    write : Out(1), place : Out, data : Out(8)
+        A byte of the answer. While ``ready``, ``place`` is that behind the last item.
+    """
+
+    def __init__(self):
+        super().__init__(
+            {
+                "begin": In(1),
+                "at": In(range(ANSWER_MOST + 1)),
+                "valid": In(1),
+                "item": In(8 * ITEM_BYTES),
+                "ready": Out(1),
+                "write": Out(1),
+                "place": Out(range(ANSWER_MOST + 1)),
+                "data": Out(8),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        rest, left = Signal.like(self.item), Signal(range(ITEM_BYTES + 1))
+        m.d.comb += [self.ready.eq(left == 0), self.write.eq(left != 0), self.data.eq(rest[:8])]
+        with m.If(self.ready & self.valid):
+            m.d.sync += [rest.eq(self.item), left.eq(ITEM_BYTES)]
+        with m.If(~self.ready):
+            m.d.sync += [rest.eq(Cat(rest[8:])), left.eq(left - 1), self.place.eq(self.place + 1)]
+        with m.If(self.begin):
+            m.d.sync += self.place.eq(self.at)
+        return m

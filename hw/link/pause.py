@@ -1,0 +1,79 @@
+"""A run that pauses with its step and goes on afterwards, and one that ends because the host is silent."""
+
+from amaranth.hdl import Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..host import host_signature
+from ..registers import Control, Region, join
+
+
+class Pause(wiring.Component):
+    """Stops the run that goes on, and lets what is left of it run later: on the host port, while nobody else uses it.
+
+    Parameters
+    ----------
+    state : int
+        Bits of a word.
+
+    Members
+    -------
+    pause, resume, halt : In(1)
+        Begin: to stop the run with its step; to let what is left of it go on; to stop it for good. One at a time, not
+        again before ``done``.
+    done : Out(1)
+        What was begun is through.
+    noted : In(1), steps : In(32)
+        The host began a run of so many steps, or ended it (0): nothing is left of an earlier one.
+    busy : In(1)
+    port_... : the host port's, `hw.host`.
+    """
+
+    def __init__(self, state: int):
+        port = {f"port_{name}": member.flip() for name, member in host_signature(state).items()}
+        begin = dict.fromkeys(("pause", "resume", "halt", "noted", "busy"), In(1))
+        super().__init__({**begin, "steps": In(32), "done": Out(1), **port})
+
+    def elaborate(self, platform):
+        m = Module()
+        run, left = Signal.like(self.steps), Signal.like(self.steps)
+        with m.If(self.noted):
+            m.d.sync += [run.eq(self.steps), left.eq(0)]
+
+        def ask(register, following, write=None):
+            """An access to a control register; the next state waits for its answer."""
+            m.d.comb += [self.port_request.eq(1), self.port_address.eq(join(Region.CONTROL, 0, register, 0))]
+            if write is not None:
+                m.d.comb += [self.port_write.eq(1), self.port_write_data.eq(write)]
+            m.next = following
+
+        with m.FSM():
+            with m.State("idle"):
+                with m.If(self.pause):
+                    ask(Control.STOP, "stopping", write=1)
+                with m.Elif(self.halt):
+                    m.d.sync += left.eq(0)
+                    ask(Control.STOP, "asked", write=1)
+                with m.Elif(self.resume & (left != 0)):
+                    m.d.sync += [run.eq(left), left.eq(0)]
+                    ask(Control.RUN, "asked", write=left)
+                with m.Elif(self.resume):
+                    m.next = "done"
+            with m.State("stopping"):
+                with m.If(self.port_answer):
+                    m.next = "stopped"
+            with m.State("stopped"):
+                with m.If(~self.busy):
+                    ask(Control.STEPS_DONE, "counted")
+            with m.State("counted"):
+                with m.If(self.port_answer):
+                    done = self.port_read_data[: len(run)]
+                    m.d.sync += left.eq(Mux(run > done, run - done, 0))
+                    m.next = "done"
+            with m.State("asked"):
+                with m.If(self.port_answer):
+                    m.next = "done"
+            with m.State("done"):
+                m.d.comb += self.done.eq(1)
+                m.next = "idle"
+        return m

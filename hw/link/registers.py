@@ -1,0 +1,116 @@
+"""The link's own registers: what became of the bytes that came, and how long the host may be silent."""
+
+from enum import IntEnum
+
+from amaranth.hdl import Array, Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..registers import INDEX_BITS, Region
+from .receive import EVENTS
+
+LINK = len(Region)
+"""Number of their region, behind those of the circuit."""
+
+BITS = 32
+
+
+class Link(IntEnum):
+    """Index of a register."""
+
+    WATCHDOG = 0
+    HALTS = 1
+    GOOD_FRAMES = 2
+    LINE_ERRORS = 3
+    BREAKS = 4
+    COBS_ERRORS = 5
+    LENGTH_ERRORS = 6
+    CRC_ERRORS = 7
+    OVERRUNS = 8
+    DUPLICATES = 9
+    GAPS = 10
+
+
+LINK_TEXT = {
+    Link.WATCHDOG: "clock cycles without a good frame after which a run ends with its step; 0: never",
+    Link.HALTS: "runs that ended so",
+    Link.GOOD_FRAMES: "frames that were all right",
+    Link.LINE_ERRORS: "frames dropped: a byte had no stop bit, or a break came",
+    Link.BREAKS: "breaks",
+    Link.COBS_ERRORS: "frames dropped: not COBS",
+    Link.LENGTH_ERRORS: "frames dropped: not as long as they said",
+    Link.CRC_ERRORS: "frames dropped: wrong CRC",
+    Link.OVERRUNS: "frames dropped: no room",
+    Link.DUPLICATES: "commands that had been done before, and were answered again",
+    Link.GAPS: "commands dropped, because one before them is missing or there is no session",
+}
+
+COUNTERS = tuple(register for register in Link if register != Link.WATCHDOG)
+assert [counter.name.lower() for counter in COUNTERS[1:-2]] == list(EVENTS)
+
+
+class LinkRegisters(wiring.Component):
+    """Answers a request in the next cycle. Counters go round at 2^32 and are cleared by any write.
+
+    Parameters
+    ----------
+    state : int
+        Bits of a word.
+
+    Members
+    -------
+    request, write : In(1), index : In, data : In
+    answer, error : Out(1), read_data : Out
+        An error is no such register, or more than `BITS` bits for it: nothing is changed.
+    <counter> : In(1)
+        It happens in this cycle; but ``halts``.
+    halted : In(1)
+        The run was ended.
+    busy : In(1)
+    halt : Out(1)
+        A run goes on, and the host has been silent for too long.
+    """
+
+    def __init__(self, state: int):
+        events = [counter.name.lower() for counter in COUNTERS if counter != Link.HALTS]
+        super().__init__(
+            {
+                "request": In(1),
+                "write": In(1),
+                "index": In(INDEX_BITS),
+                "data": In(state),
+                "answer": Out(1),
+                "error": Out(1),
+                "read_data": Out(state),
+                **dict.fromkeys(events, In(1)),
+                "halted": In(1),
+                "busy": In(1),
+                "halt": Out(1),
+            }
+        )
+
+    def elaborate(self, platform):
+        m = Module()
+        lawful = Signal()
+        m.d.comb += lawful.eq((self.index < len(Link)) & ~(self.write & self.data[BITS:].any()))
+        registers = [Signal(BITS, name=register.name.lower()) for register in Link]
+        writes = [self.request & self.write & lawful & (self.index == register) for register in Link]
+        m.d.sync += [
+            self.answer.eq(self.request),
+            self.error.eq(self.request & ~lawful),
+            self.read_data.eq(Mux(lawful, Array(registers)[self.index[: (len(Link) - 1).bit_length()]], 0)),
+        ]
+        most = registers[Link.WATCHDOG]
+        with m.If(writes[Link.WATCHDOG]):
+            m.d.sync += most.eq(self.data)
+        for counter in COUNTERS:
+            happens = self.halted if counter == Link.HALTS else getattr(self, counter.name.lower())
+            m.d.sync += registers[counter].eq(Mux(writes[counter], 0, registers[counter] + happens))
+        silence, over, ended = Signal(BITS), Signal(), Signal()
+        m.d.sync += [silence.eq(silence + 1), over.eq((silence >= most) & (most != 0))]
+        with m.If(self.good_frames | writes[Link.WATCHDOG] | ~self.busy):
+            m.d.sync += [silence.eq(0), over.eq(0)]
+        with m.If(self.halted | ~self.busy):  # once a run: it takes until its step is over
+            m.d.sync += ended.eq(self.busy)
+        m.d.comb += self.halt.eq(over & self.busy & ~ended)
+        return m

@@ -1,0 +1,110 @@
+"""The link's own registers, through the link: what they count, and what the watchdog does."""
+
+import numpy as np
+from integer_objects import random_image
+from link_objects import KEY
+from linked import QUIET, SMALL, Line
+from test_hw_link_device import access, control, hello, loaded, read, write
+
+from hw.link.frame import Frame
+from hw.link.protocol import Operation, Status, items
+from hw.link.registers import LINK, LINK_TEXT, Link
+from hw.registers import Control, join
+from sim.native import NativeMachine
+
+ALL = read(join(LINK, 0, 0, 0), len(Link))
+
+
+def register(link):
+    return join(LINK, 0, link, 0)
+
+
+def counted(answer) -> dict[str, int]:
+    """What is not 0, but for good frames."""
+    values = dict(zip(Link, items(answer.payload)[1:], strict=True))
+    return {link.name: value for link, value in values.items() if value and link != Link.GOOD_FRAMES}
+
+
+def test_every_register_has_a_text():
+    assert set(LINK_TEXT) == set(Link)
+
+
+def test_what_happens_to_frames_is_counted():
+    line = Line()
+    packed = access(1, read(control(Control.MAGIC))).packed(KEY)
+    line.exchange(hello())
+    bad = bytearray(packed)
+    bad[-2] ^= 1
+    damage = {"CRC_ERRORS": 1, "COBS_ERRORS": 1, "LENGTH_ERRORS": 1}
+    for damaged in (bytes(bad), b"\0\x05\x01\0", packed[:8] + b"\0"):
+        line.send(damaged, QUIET)
+    line.exchange(access(1, ALL), access(3, ALL), access(1, ALL))
+    *_, answer = line.exchange(access(2, ALL))
+    assert counted(answer) == {**damage, "GAPS": 1, "DUPLICATES": 1}
+    assert items(answer.payload)[1 + Link.GOOD_FRAMES] == 5
+    wrote, after = line.exchange(access(3, write(register(Link.GAPS), 1)), access(4, ALL))
+    line.close()
+    assert wrote.status == Status.DONE and counted(after) == {**damage, "DUPLICATES": 1}
+
+
+def test_what_is_no_register_or_no_count_is_refused():
+    line = Line()
+    _, beyond, large, after = line.exchange(
+        hello(), access(1, read(register(len(Link)))), access(2, write(register(Link.WATCHDOG), 1 << 32)),
+        access(3, ALL))
+    line.close()
+    assert (beyond.status, large.status) == (Status.REFUSED, Status.REFUSED) and not counted(after)
+    assert items(beyond.payload) == [0, 0]
+
+
+def test_a_greeting_that_is_not_one_begins_no_session():
+    line = Line()
+    wrong, stranger = line.exchange(Frame(Operation.HELLO, 4), access(5, read(control(Control.MAGIC))))
+    line.close()
+    assert (wrong.status, stranger.status) == (Status.MALFORMED, Status.STRANGER)
+
+
+def test_a_segment_too_long_stays_in_its_word():
+    """Words 31 and 0 of place 5 come behind one another, not word 0 of the next lane."""
+    line = Line()
+    place = join(1, 30, 5, 0)
+    _, wrote, got = line.exchange(
+        hello(), access(1, write(place, 11, 12, 13, across=True)), access(2, read(join(1, 0, 5, 0))))
+    line.close()
+    assert wrote.status == Status.REFUSED and items(got.payload) == [0, 13]
+
+
+def run_of(rng, steps, silence):
+    """(line, first free seq, model) with a run that was begun; the host's silence may last so many cycles."""
+    image, line = random_image(rng, nodes=12, edges=16, materials=2, tables=1), Line()
+    commands = list(loaded(image))
+    line.exchange(*commands)
+    begin = access(len(commands), write(register(Link.WATCHDOG), silence), write(control(Control.RUN), steps))
+    line.send(begin.packed(KEY), 0)
+    return line, len(commands) + 1, NativeMachine(image)
+
+
+def test_a_run_ends_when_the_host_is_silent(rng):
+    steps, silence = 1000, 20_000
+    line, seq, model = run_of(rng, steps, silence)
+    line.send(b"", 3 * silence)
+    names = [read(join(1, word, 0, 0), len(model.x)) for word in range(3)]
+    (answer,) = line.exchange(
+        access(seq, read(control(Control.BUSY)), read(control(Control.STEPS_DONE)), read(control(Control.CYCLES)),
+               read(register(Link.HALTS)), *names))
+    line.close()
+    busy, done, cycles, halts, *x = items(answer.payload)[1:]
+    assert not busy and halts == 1 and 0 < done < steps
+    assert silence < cycles < silence + 2 * cycles // done
+    model.step(done)
+    top = 1 << SMALL.formats.state - 1
+    assert np.array_equal(((np.array(x).reshape(3, -1) ^ top) - top).T, model.x)
+
+
+def test_a_run_goes_on_while_the_host_speaks(rng):
+    line, seq, _ = run_of(rng, 1000, 20_000)
+    for number in range(10):
+        line.send(access(seq + number, read(control(Control.BUSY))).packed(KEY), 12_000)
+    (answer,) = line.exchange(access(seq + 10, read(control(Control.BUSY)), read(register(Link.HALTS))))
+    line.close()
+    assert items(answer.payload)[1:] == [1, 0]
