@@ -40,6 +40,11 @@ def datapaths(p: Parameters) -> tuple[EdgeDatapath, NodeDatapath]:
     return EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
 
 
+def faults(edge: EdgeDatapath, node: NodeDatapath) -> list[str]:
+    """Names of the bits of the control register ``FAULTS``."""
+    return sorted({*edge.faults, *node.faults})
+
+
 class Core(wiring.Component):
     """The whole circuit behind its host port (`hw.host.host_signature`).
 
@@ -58,7 +63,7 @@ class Core(wiring.Component):
     def __init__(self, parameters: Parameters, lane=Lane):
         self.parameters, self._make_lane = parameters, lane
         self.datapath, self.node_datapath = datapaths(parameters)
-        self.faults = sorted({*self.datapath.faults, *self.node_datapath.faults})
+        self.faults = faults(self.datapath, self.node_datapath)
         self._check()
         state = parameters.formats.state
         self._host_members = host_signature(state)

@@ -31,6 +31,18 @@ class PlacedLane(wiring.Component):
         return Module()
 
 
+class PlacedCore(wiring.Component):
+    """The circuit as an instance of the Verilog module that is made from it elsewhere."""
+
+    module = TOP
+
+    def __init__(self, core: Core):
+        super().__init__(core.signature)
+
+    def elaborate(self, platform):
+        return Module()
+
+
 @cache
 def modules(parameters: Parameters) -> tuple[str, str, Core]:
     """(Verilog of `LANE`, Verilog of `TOP`, the circuit they were made from), with what each is made of."""

@@ -6,22 +6,10 @@ from amaranth.lib.wiring import In, Out
 
 from ..core import Core
 from ..parameters import Parameters
-from ..verilog import TOP, convert, emit
+from ..verilog import PlacedCore, convert, emit
 
 FRAME, CORE = "timing", "core"
 """Names of the frame's module and of the circuit in it."""
-
-
-class PlacedCore(wiring.Component):
-    """The circuit as an instance of the Verilog module that is made from it elsewhere."""
-
-    module = TOP
-
-    def __init__(self, core: Core):
-        super().__init__(core.signature)
-
-    def elaborate(self, platform):
-        return Module()
 
 
 class Frame(wiring.Component):

@@ -1,0 +1,75 @@
+"""The circuit behind its link: two wires are all that leads to it."""
+
+from amaranth.hdl import Module
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..core import Core
+from ..description import key
+from ..families import FAMILIES
+from ..host import host_signature
+from ..parameters import Parameters
+from ..verilog import PlacedCore, convert, emit
+from .device import Device
+from .identity import Identity
+from .uart import Receiver, Transmitter, cycles_per_bit
+
+LINKED = "rheogate_linked"
+
+
+class Linked(wiring.Component):
+    """A circuit, the device that does what comes over the link, and the line.
+
+    Parameters
+    ----------
+    core : Core
+        Placed as an instance of its own Verilog module.
+    clock_hz : int
+    baud : int
+
+    Members
+    -------
+    rx : In(1), tx : Out(1)
+        The line, 1 when idle; ``rx`` is asynchronous.
+    busy : Out(1)
+        Steps are run.
+
+    Raises
+    ------
+    ValueError
+        As `hw.link.uart.cycles_per_bit`.
+    """
+
+    def __init__(self, core: Core, *, clock_hz: int, baud: int):
+        self._core, self._bit_cycles = core, cycles_per_bit(clock_hz, baud)
+        self.key = key(core.parameters)
+        self.identity = Identity.of(core.parameters, self.key, clock_hz, self._bit_cycles)
+        super().__init__({"rx": In(1), "tx": Out(1, init=1), "busy": Out(1)})
+
+    def elaborate(self, platform):
+        m, state = Module(), self._core.parameters.formats.state
+        m.submodules.core = core = PlacedCore(self._core)
+        m.submodules.device = device = Device(key=self.key, identity=self.identity.items, state=state)
+        m.submodules.receiver = receiver = Receiver(self._bit_cycles)
+        m.submodules.transmitter = transmitter = Transmitter(self._bit_cycles)
+        m.d.comb += [
+            receiver.rx.eq(self.rx),
+            self.tx.eq(transmitter.tx),
+            self.busy.eq(core.busy),
+            device.busy.eq(core.busy),
+            transmitter.valid.eq(device.out_valid),
+            transmitter.data.eq(device.out_data),
+            device.out_ready.eq(transmitter.ready),
+            *(getattr(device, name).eq(getattr(receiver, name)) for name in ("valid", "data", "error", "broken")),
+        ]
+        for name, member in host_signature(state).items():
+            here, there = getattr(core, name), getattr(device, f"port_{name}")
+            m.d.comb += here.eq(there) if member.flow == In else there.eq(here)
+        return m
+
+
+def linked(parameters: Parameters, *, clock_hz: int, baud: int) -> tuple[str, Linked]:
+    """(the Verilog text with the module `LINKED`, what it was made from). Raises ValueError as `Linked`."""
+    text, core = emit(parameters)
+    top = Linked(core, clock_hz=clock_hz, baud=baud)
+    return f"{text}\n{convert(top, LINKED, FAMILIES[parameters.family])}", top
