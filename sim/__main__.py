@@ -39,6 +39,10 @@ def parser() -> Parser:
                       help="folder for compare.json and index.html (build/report)")
     many.set_defaults(run=compare)
 
+    board = commands.add_parser("serve", help="the simulated circuit behind its serial link, on a loopback socket")
+    board.add_argument("--port", type=port_number, default=0, metavar="PORT", help="of this machine (one that is free)")
+    board.set_defaults(run=serve)
+
     speed = commands.add_parser("bench", help="time the circuit's step and that of software on this machine")
     speed.add_argument("--meshes", nargs="+", metavar="MESH", help="nodes along each axis, as 9x9 or 5x5x5")
     speed.add_argument("--steps", type=whole, default=10_000, metavar="N", help="steps of the software to time (10000)")
@@ -46,10 +50,6 @@ def parser() -> Parser:
     speed.add_argument("--out", default="build/bench.json", metavar="FILE",
                        help="file for the figures (build/bench.json)")
     speed.set_defaults(run=bench)
-
-    board = commands.add_parser("serve", help="the simulated circuit behind its serial link, on a loopback socket")
-    board.add_argument("--port", type=port_number, default=0, metavar="PORT", help="of this machine (one that is free)")
-    board.set_defaults(run=serve)
 
     for command, only in ((one, "rtl; "), (many, ""), (board, "")):
         command.add_argument("--lanes", type=whole, metavar="P",

@@ -179,3 +179,19 @@ def test_a_line_that_is_gone_is_one_error(service):
         for _ in range(100):
             board.read([control(Control.MAGIC)])
     board.close()
+
+
+@pytest.mark.parametrize(("port", "message"), [
+    ("70000", "argument --port: must be a whole number from 0 to 65535, not '70000'"),
+    ("x", "argument --port: must be a whole number from 0 to 65535, not 'x'"),
+])
+def test_a_port_to_serve_on_is_a_number(port, message, capsys):
+    assert main(["serve", "--port", port]) == 2
+    assert capsys.readouterr().err == f"error: {message} (see python -m sim serve --help)\n"
+
+
+def test_a_port_that_is_taken_is_not_served_on(service, capsys):
+    taken = service.url.rpartition(":")[2]
+    assert main(["serve", "--port", taken]) == 2
+    assert capsys.readouterr().err.startswith(
+        f"error: --port must be a port of this machine that is free, not {taken}: ")
