@@ -11,23 +11,20 @@ from golden.graph import AXES
 
 from .access import Access
 from .blocks import highest
-from .blocks.memory import READ_LATENCY, BlockRam
 from .delay import DelayLines
 from .edge import EdgeDatapath
-from .fetch import Fetch
+from .fetch import PacedFetch
 from .fields import stage_bits, unpack
 from .front import Front
-from .host import HANDOVER, HostPort, handed, host_signature
+from .host import HANDOVER, HostPort, host_signature
 from .lane import COPIED, NEXT, NODE_WORDS, STAGED, Lane, latency, written
+from .list import LATENCY as LISTED
+from .list import List
 from .parameters import Parameters
 from .progress import Progress
 from .registers import COUNTERS, Map, Region
 from .sequencer import Sequencer
 from .updater import NodeDatapath, NodeUpdater
-
-LISTED = 1 + READ_LATENCY + 1
-"""Cycles from a list's address to its entry: a register behind the choice between the host and the `hw.fetch`, another
-behind the memory, whose place is given."""
 
 
 def row_latency(parameters: Parameters) -> int:
@@ -127,16 +124,22 @@ class Core(wiring.Component):
         self._lines.build()
         return m
 
-    def _entries(self, name, record, depth, fetch_address, host_address):
-        """A list's memory: read by its `Fetch`, or by the host while nothing runs; and its word, a cycle later."""
-        ram = BlockRam(width=records.width(record), depth=depth)
-        self._m.submodules[name] = ram
-        by_host = {"address": self._lines.later(host_address, HANDOVER - 1, name=f"{name}_index")}
-        handed(self._m, ram, name, self._loading, by_host, {"address": fetch_address})
-        self._m.d.comb += [ram.write_address.eq(host_address), ram.write_data.eq(self._access.data)]
-        near = Signal(len(ram.data), name=f"{name}_near", reset_less=True)
-        self._m.d.sync += near.eq(ram.data)
-        return ram, near
+    def _entries(self, name, record, depth, fetch_address, host_address, write):
+        """A list's memory: what the host does with it is far from it, as for all other memories."""
+        self._m.submodules[name] = entries = List(width=records.width(record), depth=depth)
+
+        def far(value, of):
+            return self._lines.later(value, HANDOVER - 1, name=f"{name}_{of}", reset=of == "write")
+
+        self._m.d.comb += [
+            entries.host.eq(self._loading),
+            entries.host_address.eq(far(host_address, "index")),
+            entries.fetch_address.eq(fetch_address),
+            entries.write.eq(far(write, "write")),
+            entries.write_address.eq(far(host_address, "index")),
+            entries.write_data.eq(far(self._access.data, "data")),
+        ]
+        return entries
 
     def _front(self, name, other, fetch, need, first):
         """The list's entry in front: ``word``, ``last``, ``index``. ``need`` of an entry's word is what waits for the
@@ -158,7 +161,8 @@ class Core(wiring.Component):
             front.behind.eq(behind),
             front.behind_valid.eq(fetch.valid),
             front.behind_ready.eq(getattr(sequencer, f"{name}_behind_ready")),
-            fetch.moves.eq(front.moves),
+            fetch.behind_ready.eq(getattr(sequencer, f"{name}_behind_ready")),
+            fetch.ready.eq(getattr(sequencer, f"{name}_ready")),
             front.ready.eq(getattr(sequencer, f"{name}_ready")),
             getattr(sequencer, f"{name}_valid").eq(front.valid),
             getattr(sequencer, f"{name}_goes").eq(front.goes),
@@ -185,13 +189,14 @@ class Core(wiring.Component):
         width = records.width(record)
         m.submodules.row_highest = last = highest.Highest(count=2 * p.lanes, width=p.node_row_bits)
         size = width * p.lanes + p.node_row_bits
-        m.submodules.row_fetch = fetch = Fetch(index_bits=p.row_bits, width=size, data_latency=row_latency(p))
+        m.submodules.row_fetch = fetch = PacedFetch(index_bits=p.row_bits, width=size, data_latency=row_latency(p))
         words, self._edge_entries = [], []
         for number in range(p.lanes):
-            ram, near = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._access.index)
-            m.d.comb += ram.write.eq(self._access.strobe(Region.EDGE, 0, number))
-            words.append(near)
-            self._edge_entries.append(ram.data)
+            write = self._access.strobe(Region.EDGE, 0, number)
+            entries = self._entries(
+                f"edge_entries{number}", record, p.rows, fetch.address, self._access.index, write)
+            words.append(entries.entry)
+            self._edge_entries.append(entries.data)
         edges = [unpack(record, word) for word in words]
         behind_memory = row_latency(p) - LISTED
         later = [self._lines.later(word, behind_memory, name=f"edge_entry{n}") for n, word in enumerate(words)]
@@ -221,17 +226,17 @@ class Core(wiring.Component):
         m, p, host, sequencer = self._m, self.parameters, self._host, self._sequencer
         record = records.node_entry()
         width = records.width(record)
-        m.submodules.node_fetch = fetch = Fetch(
+        m.submodules.node_fetch = fetch = PacedFetch(
             index_bits=p.node_row_bits, width=width * p.updates, data_latency=LISTED
         )
         row, column = p.node_place(self._access.index)
+        strobe = self._access.strobe(Region.NODE, Map(p).words(Region.NODE).index("entry"))
         words, self._node_entries = [], []
         for number in range(p.updates):
-            ram, near = self._entries(f"node_entries{number}", record, p.node_rows, fetch.address, row)
-            word = Map(p).words(Region.NODE).index("entry")
-            m.d.comb += ram.write.eq(self._access.strobe(Region.NODE, word) & (column == number))
-            words.append(near)
-            self._node_entries.append(ram.data)
+            write = strobe & (column == number)
+            entries = self._entries(f"node_entries{number}", record, p.node_rows, fetch.address, row, write)
+            words.append(entries.entry)
+            self._node_entries.append(entries.data)
         m.d.comb += [
             fetch.count.eq((host.nodes + (p.updates - 1)) >> p.updates.bit_length() - 1),
             fetch.data.eq(Cat(*words)),

@@ -6,11 +6,27 @@ from amaranth.lib.wiring import In, Out
 
 from .blocks.memory import READ_LATENCY
 from .blocks.queue import Queue
+from .front import Front
 
 
 def latency(data_latency: int) -> int:
     """Cycles from the end of the flush to the first entry."""
     return data_latency + 2
+
+
+def members(index_bits: int, width: int) -> dict:
+    """What `Fetch` and `PacedFetch` share."""
+    return {
+        "flush": In(1),
+        "count": In(index_bits + 1),
+        "address": Out(index_bits),
+        "data": In(width),
+        "valid": Out(1),
+        "index": Out(index_bits),
+        "last": Out(1),
+        "word": Out(width),
+        "next_word": Out(width),
+    }
 
 
 class Fetch(wiring.Component):
@@ -43,20 +59,7 @@ class Fetch(wiring.Component):
     def __init__(self, *, index_bits: int, width: int, data_latency: int = READ_LATENCY):
         self._data_latency = data_latency
         self.kind = f"fetch_{width}"
-        super().__init__(
-            {
-                "flush": In(1),
-                "count": In(index_bits + 1),
-                "address": Out(index_bits),
-                "data": In(width),
-                "valid": Out(1),
-                "moves": In(1),
-                "index": Out(index_bits),
-                "last": Out(1),
-                "word": Out(width),
-                "next_word": Out(width),
-            }
-        )
+        super().__init__({**members(index_bits, width), "moves": In(1)})
 
     def elaborate(self, platform):
         m = Module()
@@ -94,5 +97,40 @@ class Fetch(wiring.Component):
             queue.data_in.eq(Cat(self.data, tag)),
             queue.take.eq(self.moves & queue.valid),
             self.next_word.eq(queue.data[: len(self.word)]),
+        ]
+        return m
+
+
+class PacedFetch(wiring.Component):
+    """A `Fetch` that knows by itself when its entry moves to the `hw.front.Front` of a list. It has the register that
+    says so of its own: the queue hangs on it, and may stand far from the front.
+
+    Members
+    -------
+    behind_ready, ready : In(1)
+        As of the `hw.front.Front`.
+    flush, count, address, data, valid, index, last, word, next_word
+        As of `Fetch`.
+    """
+
+    def __init__(self, *, index_bits: int, width: int, data_latency: int = READ_LATENCY):
+        self._sizes = {"index_bits": index_bits, "width": width, "data_latency": data_latency}
+        self.kind = f"paced_fetch_{width}"
+        self._shared = members(index_bits, width)
+        super().__init__({**self._shared, "behind_ready": In(1), "ready": In(1)})
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.fetch = fetch = Fetch(**self._sizes)
+        m.submodules.pace = pace = Front(width=1)
+        for name, member in self._shared.items():
+            inner, outer = getattr(fetch, name), getattr(self, name)
+            m.d.comb += inner.eq(outer) if member.flow == In else outer.eq(inner)
+        m.d.comb += [
+            pace.flush.eq(self.flush),
+            pace.behind_valid.eq(fetch.valid),
+            pace.behind_ready.eq(self.behind_ready),
+            pace.ready.eq(self.ready),
+            fetch.moves.eq(pace.moves),
         ]
         return m

@@ -4,12 +4,13 @@ from dataclasses import dataclass
 
 from . import fetch
 from .blocks.memory import READ_LATENCY
-from .core import LISTED, datapaths, row_latency
+from .core import datapaths, row_latency
 from .front import LATENCY as FRONT_LATENCY
 from .host import HANDOVER
 from .host import LATENCY as HOST_LATENCY
 from .lane import COPIED, FETCHED, NEXT, written
 from .lane import latency as sums_latency
+from .list import LATENCY as LISTED
 from .parameters import Parameters
 
 

@@ -1,10 +1,12 @@
 """The fetch of a list: all entries in their order, over and over, none twice, whenever they are taken."""
 
 import pytest
+from amaranth.hdl import Module
 from hw_objects import simulate
 
 from hw.blocks.memory import READ_LATENCY
-from hw.fetch import Fetch, latency
+from hw.fetch import Fetch, PacedFetch, latency
+from hw.front import Front
 
 BITS = 6
 
@@ -107,3 +109,28 @@ def test_a_flush_starts_over_with_another_count(rng):
             assert taken == entries(count, len(taken))
 
     simulate(dut, bench)
+
+
+@pytest.mark.parametrize("there", [0.3, 0.7, 1.0])
+def test_a_paced_fetch_moves_with_the_front_of_its_list(there, rng):
+    """The front, which stands elsewhere, gets every entry once and in order."""
+    m, fetch, front = Module(), PacedFetch(index_bits=BITS, width=8), Front(width=8)
+    m.submodules.fetch, m.submodules.front = fetch, front
+    m.d.comb += [front.flush.eq(fetch.flush), front.behind.eq(fetch.word), front.behind_valid.eq(fetch.valid)]
+    m.d.comb += [front.behind_ready.eq(fetch.behind_ready), front.ready.eq(fetch.ready)]
+    count, taken = 9, []
+
+    async def bench(ctx):
+        memory = Memory(fetch)
+        ctx.set(fetch.count, count)
+        for cycle in range(400):
+            ctx.set(fetch.flush, cycle < 2)
+            for ready in (fetch.behind_ready, fetch.ready):
+                ctx.set(ready, bool(rng.random() < there))
+            memory.step(ctx)
+            if ctx.get(front.goes):
+                taken.append(ctx.get(front.entry))
+            await ctx.tick()
+
+    simulate(m, bench)
+    assert taken == [word for _, _, word in entries(count, len(taken))] and len(taken) > 60

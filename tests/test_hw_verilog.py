@@ -116,7 +116,8 @@ def test_each_kind_of_component_is_one_module(text):
     top = {name.removeprefix(f"{TOP}_") for name in names if not name.startswith(LANE)}
     assert {name for name in top if not sized.fullmatch(name)} == {
         TOP, "block_ram_10x33", "block_ram_16x18", "block_ram_16x34", "block_ram_16x36", "block_ram_16x8", "fetch_34",
-        "front_39", "front_75", "fetch_70", "highest", "host_port", "multiplier_u18_s18", "node_updater",
+        "front_1", "front_39", "front_75", "fetch_70", "highest", "list_10x33", "list_16x34", "paced_fetch_34",
+        "paced_fetch_70", "host_port", "multiplier_u18_s18", "node_updater",
         "progress_4_from_0", "progress_5_from_1", "queue_16x75", "queue_8x39", "sequencer",
     }
     assert text.count(f"  {LANE} lane") == SMALL.lanes
