@@ -177,7 +177,7 @@ def test_the_tools_are_told_device_and_files(tmp_path, monkeypatch):
     assert "--85k --package CABGA381 --speed 6 --lpf rheogate.lpf" in called[0] and "--freq 100" in called[0]
     assert called[1].startswith("yowasp-ecppack --compress --input rheogate.config --bit rheogate.bit")
     assert "--device GW5AST-LV138FPG676AC1/I0 --vopt family=GW5AST-138C --vopt cst=rheogate.cst" in called[2]
-    assert called[3].startswith("gowin_pack -d GW5AST-138C")
+    assert called[3].startswith("gowin_pack -d GW5AST-138C --cpu_as_gpio -o rheogate.fs")
 
 
 BLINK = """

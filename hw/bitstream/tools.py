@@ -93,6 +93,5 @@ def pack(board: Board, folder: Path) -> None:
     if board.family == "ecp5":
         run(folder, "yowasp-ecppack", "--compress", "--input", f"{NAME}.config", "--bit", name)
     else:
-        # The line and the button are on pins that serve the configuration too
-        run(folder, "gowin_pack", "-d", CHIPS[board.device], "--sspi_as_gpio", "--mspi_as_gpio", "--cpu_as_gpio",
-            "-o", name, f"{NAME}.placed.json")
+        # Clock, line and a light are on pins that a processor could configure the device through
+        run(folder, "gowin_pack", "-d", CHIPS[board.device], "--cpu_as_gpio", "-o", name, f"{NAME}.placed.json")
