@@ -10,8 +10,8 @@ from golden.files import write_text
 from .. import pins
 from ..board_top import BOARD
 from ..boards import Board
-from ..timing.tools import SYNTHESIS, run
-from ..verilog import LANE, TOP
+from ..timing.tools import OWN, SYNTHESIS, run
+from ..verilog import TOP
 from .vivado import script
 
 NAME = "rheogate"
@@ -29,10 +29,10 @@ class Chain(NamedTuple):
     packer: str | None = None
 
 
-# A lane and a node updater stay modules of their own, as in hw/timing/tools.py. Gowin's synthesis would take the ports
-# of such a module for pins. Nothing relies on what a read returns of a word that is written in the same cycle
+# The modules that stay apart are those of hw/timing/tools.py, so that what is timed is what is built. Gowin's synthesis
+# would take the ports of such a module for pins. Nothing relies on what a read returns of a word that is written in the same cycle
 # (hw/families/ecp5.v spoils it in simulation), so that generic memories may be block RAMs which leave that open
-APART = f"setattr -mod -set keep_hierarchy 1 {TOP} {LANE} {TOP}_node_updater\n"
+APART = f"setattr -mod -set keep_hierarchy 1 {TOP} {' '.join(OWN)}\n"
 CHAINS = {
     "ecp5": Chain(
         f"{APART}synth_ecp5 -top {BOARD} -json {NAME}.json",
