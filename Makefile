@@ -17,7 +17,7 @@ capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
 
 .DEFAULT_GOAL := compare
 .NOTPARALLEL:
-.PHONY: compare verilog timing bench test verify lint lock help clean distclean environment
+.PHONY: compare verilog timing bitstream flash doctor bench test verify lint lock help clean distclean environment
 
 compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on float64, integers and simulated circuit
 	@$(run) -m sim compare scenes/*.toml $(lanes) $(updates) --out build/report
@@ -29,6 +29,16 @@ verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATE
 timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3", JOBS=
 	@$(run) -m hw timing --board $(BOARD) $(if $(filter-out file,$(origin LANES)),$(lanes)) $(capacities) \
 	    $(if $(SEEDS),--seeds $(SEEDS)) --jobs $(JOBS)
+
+bitstream: environment ## what is loaded into BOARD=, or a project for its vendor's tool; LANES= ... as above, KEEP=1 publishes
+	@$(run) -m hw bitstream --board $(BOARD) $(if $(filter-out file,$(origin LANES)),$(lanes)) $(capacities) \
+	    $(if $(KEEP),--keep)
+
+flash: environment ## load it into BOARD=; PERMANENT=1 to be there at power-on
+	@$(run) -m hw flash --board $(BOARD) $(if $(PERMANENT),--permanent)
+
+doctor: environment ## what is there, what is missing, what to do about it
+	@$(run) -m hw doctor
 
 bench: environment ## time the circuit's step and that of software on this machine: keep the machine idle meanwhile
 	@$(run) -m sim bench --out build/bench.json

@@ -41,17 +41,26 @@ def libpython():
     return False
 
 
+def checked():
+    """(what it is, Debian's package, whether it is there) of each thing that pip can't bring."""
+    programs = [(what, package, bool(shutil.which(program))) for program, (what, package) in PROGRAMS.items()]
+    venv = bool(importlib.util.find_spec("venv") and importlib.util.find_spec("ensurepip"))
+    return programs + [
+        ("Python's venv module", f"python{VERSION}-venv", venv),
+        (f"the shared library of Python {VERSION}", f"libpython{VERSION}", libpython()),
+    ]
+
+
 def missing():
     """One line for each thing the machine lacks and pip can't bring, with what to install."""
     if sys.version_info < OLDEST:
         return [f"python3 must be Python {OLDEST[0]}.{OLDEST[1]} or newer, not {VERSION}: install one, "
                 "or name the one to use: make PYTHON=python3.12"]
-    lacking = [entry for program, entry in PROGRAMS.items() if not shutil.which(program)]
-    if not (importlib.util.find_spec("venv") and importlib.util.find_spec("ensurepip")):
-        lacking.append(("Python's venv module", f"python{VERSION}-venv"))
-    if not libpython():
-        lacking.append((f"the shared library of Python {VERSION}", f"libpython{VERSION}"))
-    return [f"{what} is missing: install it (Debian: apt install {package})" for what, package in lacking]
+    return [f"{what} is missing: {install_it(package)}" for what, package, there in checked() if not there]
+
+
+def install_it(package):
+    return f"install it (Debian: apt install {package})"
 
 
 def run(*command):

@@ -1,4 +1,4 @@
-"""The command line: ``python -m hw verilog``, and lint, timing, docs."""
+"""The command line: ``python -m hw verilog``, and lint, timing, bitstream, flash, doctor, docs."""
 
 import argparse
 import re
@@ -10,6 +10,8 @@ from golden.command import Parser, execute
 from golden.errors import InputError
 from golden.formats import Formats
 
+from . import doctor, flash
+from .bitstream import command as bitstream
 from .families import FAMILIES
 from .parameters import Parameters
 from .timing import command as timing
@@ -31,8 +33,9 @@ CAPACITIES = {
 
 
 def parser() -> Parser:
-    main = Parser(prog="python -m hw", description="The circuit's Verilog.")
-    commands = main.add_subparsers(dest="command", required=True, metavar="verilog|lint|timing|docs")
+    main = Parser(prog="python -m hw", description="The circuit's Verilog, and what is made of it.")
+    names = "verilog|lint|timing|bitstream|flash|doctor|docs"
+    commands = main.add_subparsers(dest="command", required=True, metavar=names)
     defaults = {**vars(Parameters()), **vars(Formats())}
     for name, run, what in (
         ("verilog", verilog, "write the Verilog and its manifest"),
@@ -57,6 +60,9 @@ def parser() -> Parser:
         command.add_argument("--force", action="store_true", help="replace another tool's files of the same names")
         command.set_defaults(run=run)
     timing.add_options(commands.add_parser("timing", help="how fast and how large it is on a board"), whole)
+    bitstream.add_options(commands.add_parser("bitstream", help="what is loaded into a board"), whole)
+    flash.add_options(commands.add_parser("flash", help="load it"))
+    doctor.add_options(commands.add_parser("doctor", help="what is there, what is missing, what to do about it"))
     docs_command = commands.add_parser("docs", help="bring the README's tables up to date")
     docs_command.set_defaults(run=docs)
     return main

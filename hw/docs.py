@@ -4,6 +4,8 @@ import re
 
 from golden import formats
 
+from .bitstream import command as bitstream
+from .bitstream import result as build
 from .latency import latencies
 from .parameters import Parameters
 from .registers import CONTROL_TEXT, Control, Map, Region
@@ -38,12 +40,17 @@ def timing_table(parameters: Parameters) -> str:
     return timing.published()
 
 
+def board_table(parameters: Parameters) -> str:
+    return build.published(bitstream.kept())
+
+
 TABLES = {
     "formats": format_table,
     "latency": latency_table,
     "memory map": memory_table,
     "registers": register_table,
     "timing": timing_table,
+    "boards": board_table,
 }
 
 

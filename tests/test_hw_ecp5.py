@@ -8,7 +8,7 @@ from fnmatch import fnmatch
 import numpy as np
 import pytest
 from amaranth.hdl import Fragment, signed, unsigned
-from ecp5_twins import run
+from family_twins import run
 from integer_objects import random_image
 from rtl_objects import rtl_machine
 from test_hw_multiplier import SHAPES, operands

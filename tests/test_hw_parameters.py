@@ -41,7 +41,7 @@ def test_each_end_of_a_range_is_legal_and_nothing_beyond(name):
 
 @pytest.mark.parametrize("family", ["x", "ECP5", "", None])
 def test_a_family_that_nobody_knows(family):
-    refused(lambda: Parameters(family=family), f"family must be generic or ecp5, not {family!r}")
+    refused(lambda: Parameters(family=family), f"family must be generic or ecp5 or gowin, not {family!r}")
 
 
 def test_a_list_entry_fits_a_state_word():

@@ -9,10 +9,11 @@ import pytest
 from golden.errors import InputError
 from hw import boards
 from hw.__main__ import main
+from hw.cells import Sizes
 from hw.parameters import Parameters
 from hw.timing import command, flow, report, result, tools
 from hw.timing.frame import FRAME
-from hw.timing.report import Sizes, Step
+from hw.timing.report import Step
 from hw.timing.result import Result
 
 STATISTICS = {
@@ -177,7 +178,10 @@ HELP = "(see python -m hw timing --help)"
 
 @pytest.mark.parametrize("options, message", [
     ("", f"one of the arguments --board --smallest is required {HELP}"),
-    ("--board x", "--board must be ulx3s-25f or ulx3s-85f, not 'x'"),
+    ("--board x", "--board must be arty-a7-100 or tang-mega-138k-pro or ulx3s-25f or ulx3s-85f, "
+     "not 'x'"),
+    ("--board arty-a7-100", "--board must be one whose device the tools time, ulx3s-25f or ulx3s-85f, not "
+     "'arty-a7-100'"),
     ("--board ulx3s-85f --lanes 0", "--lanes must be a whole number from 1 to {lanes}, not 0"),
     ("--board ulx3s-85f --seeds 1 0", "--seeds must be different numbers from 1 to 2147483647, not 0"),
     ("--board ulx3s-85f --seeds 1 2 1", "--seeds must be different numbers from 1 to 2147483647, not 1"),

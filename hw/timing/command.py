@@ -19,7 +19,7 @@ MOST_JOBS = 64
 
 def add_options(command, whole: Callable[[str], int]) -> None:
     what = command.add_mutually_exclusive_group(required=True)
-    what.add_argument("--board", metavar="NAME", help=" or ".join(boards.names()))
+    what.add_argument("--board", metavar="NAME", help=" or ".join(boards.timed()))
     what.add_argument("--smallest", action="store_true", help="only the sizes of the smallest circuit")
     for name in PARAMETERS:
         command.add_argument(f"--{name}", type=whole, metavar="N", help="instead of the board's")
@@ -40,6 +40,9 @@ def run(args) -> int:
         return _written("smallest", result, args.keep)
     chosen = {name: getattr(args, name) for name in PARAMETERS}
     board = boards.load(args.board)
+    if board.family not in boards.TIMED:
+        raise InputError(f"--board must be one whose device the tools time, {' or '.join(boards.timed())}, "
+                         f"not {args.board!r}")
     try:
         parameters = board.parameters(**chosen)
     except ValueError as error:

@@ -6,13 +6,11 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from statistics import median
 
-from golden.errors import InputError
-
-from ..boards import Board
+from ..boards import Board, fits
 from ..parameters import Parameters
 from . import report, tools
 from .frame import framed
-from .result import PARAMETERS, Result, Smallest, shares
+from .result import PARAMETERS, Result, Smallest
 
 SMALLEST = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1, family="ecp5")
 
@@ -29,7 +27,7 @@ def measure(name: str, board: Board, parameters: Parameters, seeds: list[int], f
     shown("synthesis")
     verilog = framed(parameters)
     synthesised, frame = report.sizes(tools.synthesise(verilog, folder, name))
-    _fits(name, board, synthesised)
+    fits(name, synthesised, board)
 
     def placed(seed: int) -> dict:
         shown(f"seed {seed}")
@@ -62,9 +60,3 @@ def smallest(folder: Path) -> Smallest:
     """What the smallest circuit takes."""
     circuit, _ = report.sizes(tools.synthesise(framed(SMALLEST), folder, "smallest"))
     return Smallest({size: getattr(SMALLEST, size) for size in PARAMETERS}, circuit)
-
-
-def _fits(name: str, board: Board, circuit: report.Sizes) -> None:
-    over = [f"{used} {what}s of {holds}" for what, used, holds in shares(circuit, board) if used > holds]
-    if over:
-        raise InputError(f"the circuit must fit {name}, not take {', '.join(over)}: choose fewer lanes, nodes or edges")

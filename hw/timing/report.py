@@ -4,20 +4,12 @@ import re
 
 from msgspec import Struct
 
+from ..cells import LOOKUP_TABLES, Sizes
+from ..cells import sizes as sizes_of
 from .frame import CORE, FRAME
 
-
-class Sizes(Struct, forbid_unknown_fields=True):
-    """What the circuit takes of a device. ``lut`` counts all lookup tables, those of adders and memories included."""
-
-    lut: int
-    ff: int
-    multipliers: int
-    block_rams: int
-    lut_ram: int
-
-    def __sub__(self, other: "Sizes") -> "Sizes":
-        return Sizes(*(getattr(self, name) - getattr(other, name) for name in self.__struct_fields__))
+FAMILY = "ecp5"
+"""The one that is timed."""
 
 
 class Step(Struct, forbid_unknown_fields=True):
@@ -27,8 +19,6 @@ class Step(Struct, forbid_unknown_fields=True):
     ns: float
 
 
-# Lookup tables that a cell takes: an adder of two bits has two, a memory of 16x4 has four
-LOOKUP_TABLES = {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 4}
 # What the tools append to a name: of a part of a cell "$..", of a cell its kind and pin, of a memory its place and pin
 KIND = re.compile(r"[._](?:LUT4|CCU2C|PFUMX|L6MUX21|TRELLIS_[A-Z0-9]+|MULT18X18D|DP16KD|PDPW16KD)(?:_|$)")
 PLACE = re.compile(r"(?:\.\d+)+(?:_[A-Z]+\d*(?:_\d+)?)?$")
@@ -37,19 +27,8 @@ CLOCKED = "posedge "
 
 def sizes(statistics: dict) -> tuple[Sizes, Sizes]:
     """(of the circuit, of the frame around it) as synthesised, from Yosys' statistics."""
-    frame = _sizes(statistics["modules"]["\\" + FRAME]["num_cells_by_type"])
-    return _sizes(statistics["design"]["num_cells_by_type"]) - frame, frame
-
-
-def _sizes(cells: dict[str, int]) -> Sizes:
-    tables = {name: count * cells.get(name, 0) for name, count in LOOKUP_TABLES.items()}
-    return Sizes(
-        lut=sum(tables.values()),
-        ff=cells.get("TRELLIS_FF", 0),
-        multipliers=cells.get("MULT18X18D", 0),
-        block_rams=cells.get("DP16KD", 0) + cells.get("PDPW16KD", 0),
-        lut_ram=tables["TRELLIS_DPR16X4"],
-    )
+    frame = sizes_of(statistics["modules"]["\\" + FRAME]["num_cells_by_type"], FAMILY)
+    return sizes_of(statistics["design"]["num_cells_by_type"], FAMILY) - frame, frame
 
 
 def placed(report: dict) -> Sizes:
@@ -60,7 +39,7 @@ def placed(report: dict) -> Sizes:
         ff=used["TRELLIS_FF"],
         multipliers=used["MULT18X18D"],
         block_rams=used["DP16KD"],
-        lut_ram=LOOKUP_TABLES["TRELLIS_DPR16X4"] * used["TRELLIS_RAMW"],
+        lut_ram=LOOKUP_TABLES[FAMILY]["TRELLIS_DPR16X4"] * used["TRELLIS_RAMW"],
     )
 
 

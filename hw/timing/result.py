@@ -10,9 +10,10 @@ from msgspec import Struct
 from golden.files import write_text
 
 from .. import boards
-from ..boards import Board, Limits
+from ..boards import Board, Limits, shares
+from ..cells import Sizes
 from ..parameters import Parameters
-from .report import Sizes, Step
+from .report import Step
 
 KEPT = boards.FOLDER / "timing"
 PARAMETERS = tuple(Parameters.RANGES)
@@ -51,7 +52,7 @@ class Smallest(Struct, forbid_unknown_fields=True):
     sizes: Sizes
 
 
-def write(path: Path, result: Result | Smallest) -> None:
+def write(path: Path, result: Struct) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     write_text(path, msgspec.json.format(msgspec.json.encode(result), indent=2).decode() + "\n")
 
@@ -83,26 +84,15 @@ def table(result: Result, board: Board) -> str:
     return "\n".join(lines)
 
 
-def shares(sizes: Sizes | Result, board: Board) -> list[tuple[str, int, int]]:
-    """(what, how many are used, how many the device holds)"""
-    holds = board.holds
-    return [
-        ("LUT", sizes.lut, holds.luts),
-        ("FF", sizes.ff, holds.ffs),
-        ("multiplier", sizes.multipliers, holds.multipliers),
-        ("block RAM", sizes.block_rams, holds.block_rams),
-    ]
-
-
 HEAD = "| board | lanes | updates | nodes | edges " \
        "| LUT | FF | multipliers | block RAMs | Fmax, lowest | median | limit | clock |"
 
 
 def published(folder: Path = KEPT) -> str:
-    """Markdown: every board with what is kept of it."""
+    """Markdown: every board whose device the tools time, with what is kept of it."""
     columns = HEAD.count("|") - 1
     lines = [HEAD, "|---" * columns + "|"]
-    for name in boards.names():
+    for name in boards.timed():
         path = folder / f"{name}.json"
         cells = [name, *(_cells(read(path, Result), boards.load(name)) if path.exists() else ["not timed yet"])]
         lines.append(f"| {' | '.join(cells + [''] * (columns - len(cells)))} |")

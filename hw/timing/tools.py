@@ -37,7 +37,7 @@ def synthesise(verilog: str, folder: Path, name: str) -> dict:
     """Yosys' statistics of what it makes of the Verilog; the netlist stays in the folder."""
     write_text(folder / f"{name}.v", verilog)
     write_text(folder / f"{name}.ys", SCRIPT.format(name=name))
-    _run(folder, SYNTHESIS, "-q", "-s", f"{name}.ys")
+    run(folder, SYNTHESIS, "-q", "-s", f"{name}.ys")
     return json.loads((folder / f"{name}.cells.json").read_text(encoding="utf-8"))
 
 
@@ -58,12 +58,13 @@ def place_and_route(board: Board, folder: Path, name: str, seed: int) -> dict:
     stamp = folder / f"{name}.{seed}.sha256"
     if not stamp.exists() or stamp.read_text(encoding="utf-8") != made_from:
         stamp.unlink(missing_ok=True)
-        _run(folder, PLACE_AND_ROUTE, "--quiet", *options)
+        run(folder, PLACE_AND_ROUTE, "--quiet", *options)
         write_text(stamp, made_from)
     return json.loads((folder / report).read_text(encoding="utf-8"))
 
 
-def _run(folder: Path, tool: str, *arguments: str) -> None:
+def run(folder: Path, tool: str, *arguments: str) -> None:
+    """A tool that pip installed. Raises `InternalError` with its last words if it fails."""
     program = Path(sys.executable).with_name(tool)
     done = subprocess.run([program, *arguments], cwd=folder, capture_output=True, text=True)
     if done.returncode:

@@ -1,4 +1,4 @@
-"""The generic blocks and their twins of ECP5 primitives, simulated together by Verilator."""
+"""The generic blocks and their twins of a family's primitives, simulated together by Verilator."""
 
 import ctypes
 from pathlib import Path
@@ -37,15 +37,15 @@ class Blocks(wiring.Component):
         return m
 
 
-TOP = """module twins(input clk, input [{last}:0] in, output [{last}:0] generic, ecp5);
+TOP = """module twins(input clk, input [{last}:0] in, output [{last}:0] generic, family);
   blocks_generic one(.clk(clk), .rst(1'b0), .inputs(in), .outputs(generic));
-  blocks_ecp5 other(.clk(clk), .rst(1'b0), .inputs(in), .outputs(ecp5));
+  blocks_{family} other(.clk(clk), .rst(1'b0), .inputs(in), .outputs(family));
 endmodule
 """
 
 
-def run(blocks, inputs: list[dict[str, np.ndarray]], folder: Path) -> list[tuple[np.ndarray, np.ndarray]]:
-    """(what each block, what its twin put out) in every cycle, before the clock rises, as bits.
+def run(blocks, inputs: list[dict[str, np.ndarray]], folder: Path, family: str = "ecp5"):
+    """A list of (what each block, what its twin put out) in every cycle, before the clock rises, as bits.
 
     Parameters
     ----------
@@ -55,9 +55,10 @@ def run(blocks, inputs: list[dict[str, np.ndarray]], folder: Path) -> list[tuple
         Of each block, in every cycle.
     folder : Path
         To build in.
+    family : str
     """
-    texts = [convert(Blocks(blocks), f"blocks_{family}", FAMILIES[family]) for family in ("generic", "ecp5")]
-    text = "\n".join([TOP.format(last=SLOT * len(inputs) - 1), *texts, MODELS["ecp5"].read_text()])
+    texts = [convert(Blocks(blocks), f"blocks_{name}", FAMILIES[name]) for name in ("generic", family)]
+    text = "\n".join([TOP.format(last=SLOT * len(inputs) - 1, family=family), *texts, MODELS[family].read_text()])
     twins = opened(library("twins", text, SHIM, folder=folder)).twins
     stimulus = np.stack([_slot(block, values) for block, values in zip(blocks, inputs, strict=True)], axis=1)
     outputs = np.zeros((2, *stimulus.shape), np.uint64)
