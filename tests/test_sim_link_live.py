@@ -1,5 +1,8 @@
 """Hands on an object that runs: whole steps only, new velocities from a step on, in as many bytes as it says."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 import scene_text
@@ -104,3 +107,14 @@ def test_more_nodes_than_fit_are_refused(loaded):
         Live(board, loaded, np.zeros(30, int))
     with pytest.raises(InputError, match="not 0"):
         Live(board, loaded, np.zeros(0, int))
+
+
+def test_the_readme_says_how_long_an_exchange_takes():
+    readme = Path(__file__).parents[1].joinpath("README.md").read_text()
+    (one, other) = (line_bytes(nodes) for nodes in (1, 9))
+    text = re.sub(r"\s+", " ", readme)
+    times = [10 * sum(count) / baud for baud in (1e3, 3e3) for count in (one, other)]  # ms, ten bits a byte
+    assert (f"For one node {one[0]} bytes go out and {one[1]} come back, {times[0]:.2f} ms on the line at 1 Mbaud and "
+            f"{times[2]:.2f} ms at 3; for nine nodes {other[0]} and {other[1]}, {times[1]:.1f} and {times[3]:.1f} ms."
+            ) in text
+    assert f"up to {most_nodes()} nodes" in text
