@@ -50,6 +50,12 @@ class CircuitMachine:
         self.circuit.write(self._program.start(v))
         self.v = v
 
+    def take(self, image: Image):
+        """Go on with an image that differs in materials, natural lengths and ratios."""
+        self._program = Program(image, self.circuit.parameters)
+        self.circuit.write(self._program.materials())
+        self.ratio = image.ratio.copy()
+
     def step(self, steps: int = 1):
         self.circuit.write([(self._control(Control.RUN), steps)])
         self.circuit.wait()
