@@ -289,4 +289,4 @@ def test_it_is_a_module():
     done = subprocess.run([sys.executable, "-m", "hw"], cwd=ROOT, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == ("error: the following arguments are required: "
-                           "verilog|lint|timing|bitstream|flash|doctor|docs (see python -m hw --help)\n")
+                           "verilog|lint|map|timing|bitstream|flash|doctor|docs (see python -m hw --help)\n")
