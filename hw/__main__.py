@@ -1,4 +1,4 @@
-"""The command line: ``python -m hw verilog``, and lint, timing, bitstream, flash, doctor, docs."""
+"""The command line: ``python -m hw verilog``, and lint, map, timing, bitstream, flash, doctor, docs."""
 
 import argparse
 import re
@@ -34,12 +34,13 @@ CAPACITIES = {
 
 def parser() -> Parser:
     main = Parser(prog="python -m hw", description="The circuit's Verilog, and what is made of it.")
-    names = "verilog|lint|timing|bitstream|flash|doctor|docs"
+    names = "verilog|lint|map|timing|bitstream|flash|doctor|docs"
     commands = main.add_subparsers(dest="command", required=True, metavar=names)
     defaults = {**vars(Parameters()), **vars(Formats())}
     for name, run, what in (
         ("verilog", verilog, "write the Verilog and its manifest"),
         ("lint", lint, "write the Verilog and let Verilator judge it"),
+        ("map", map_, "write the memory map and what is said over the link, as C header, page and JSON"),
     ):
         command = commands.add_parser(name, help=what)
         for option, meaning in {**CAPACITIES, **FORMATS}.items():
@@ -56,8 +57,10 @@ def parser() -> Parser:
             metavar="NAME",
             help=f"devices whose hard blocks it takes, {' or '.join(FAMILIES)} ({defaults['family']})",
         )
-        command.add_argument("--out", default="build/verilog", metavar="DIR", help="folder to write to (build/verilog)")
-        command.add_argument("--force", action="store_true", help="replace another tool's files of the same names")
+        out = "build/map" if name == "map" else "build/verilog"
+        command.add_argument("--out", default=out, metavar="DIR", help=f"folder to write to ({out})")
+        if name != "map":
+            command.add_argument("--force", action="store_true", help="replace another tool's files of the same names")
         command.set_defaults(run=run)
     timing.add_options(commands.add_parser("timing", help="how fast and how large it is on a board"), whole)
     bitstream.add_options(commands.add_parser("bitstream", help="what is loaded into a board"), whole)
@@ -106,6 +109,15 @@ def lint(args) -> int:
         print(line, file=sys.stderr)
     print(f"{len(found)} warnings beyond those that {WAIVERS.relative_to(ROOT)} excuses")
     return 1 if found else 0
+
+
+def map_(args) -> int:
+    from . import build, pages
+
+    chosen, folder = parameters(args), Path(args.out)
+    pages.write(chosen, folder)
+    print(f"{folder}: map of {build.describe(chosen)}")
+    return 0
 
 
 def docs(args) -> int:

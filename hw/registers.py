@@ -135,6 +135,11 @@ class Map:
         }
         return {"value": formats[region][word]}
 
+    def mask(self, address: int) -> int:
+        """The bits of a word that are there to be read back: those of its fields."""
+        word, region = address >> INDEX_BITS & (1 << WORD_BITS) - 1, Region(address >> ADDRESS_BITS - REGION_BITS)
+        return (1 << records.width(self.fields(region, self.words(region)[word]))) - 1
+
     def read_only(self, region: Region, word: str) -> bool:
         return region == Region.NODE and word in NODE_FORCE
 

@@ -1,4 +1,4 @@
-"""The command line: ``python -m sim run SCENE ...``, ``python -m sim compare SCENE ...``, ``python -m sim bench``."""
+"""The command line: ``python -m sim run SCENE ...``, ``python -m sim compare SCENE ...``, and serve, bench."""
 
 from __future__ import annotations
 
@@ -18,12 +18,15 @@ from sim.run import BACKENDS, LANES, UPDATES
 
 def parser() -> Parser:
     main = Parser(prog="python -m sim", description="Run scenes on float64, on integers and on the simulated circuit.")
-    commands = main.add_subparsers(dest="command", required=True, metavar="run|compare|bench")
+    commands = main.add_subparsers(dest="command", required=True, metavar="run|compare|serve|bench")
 
     one = commands.add_parser("run", help="run one scene on one backend")
     one.add_argument("scene", metavar="SCENE", help="a scene file (TOML)")
     one.add_argument("--backend", required=True, choices=BACKENDS,
-                     help="float64, the circuit's integer model, or its Verilog under Verilator")
+                     help="float64, the circuit's integer model, its Verilog under Verilator, or a circuit on a board")
+    one.add_argument("--port", metavar="URL",
+                     help="board: a serial port or any other URL of pyserial's, as socket://127.0.0.1:5000")
+    one.add_argument("--baud", type=whole, metavar="N", help="board: bits a second (1000000)")
     one.add_argument("--waves", nargs="?", const="vcd", choices=waves.FORMATS, metavar="vcd|fst",
                      help="write the waveforms of the circuit's first 5000 busy cycles as well "
                           "(rtl; vcd, which is larger but needs no library)")
@@ -36,6 +39,10 @@ def parser() -> Parser:
                       help="folder for compare.json and index.html (build/report)")
     many.set_defaults(run=compare)
 
+    board = commands.add_parser("serve", help="the simulated circuit behind its serial link, on a loopback socket")
+    board.add_argument("--port", type=port_number, default=0, metavar="PORT", help="of this machine (one that is free)")
+    board.set_defaults(run=serve)
+
     speed = commands.add_parser("bench", help="time the circuit's step and that of software on this machine")
     speed.add_argument("--meshes", nargs="+", metavar="MESH", help="nodes along each axis, as 9x9 or 5x5x5")
     speed.add_argument("--steps", type=whole, default=10_000, metavar="N", help="steps of the software to time (10000)")
@@ -44,11 +51,12 @@ def parser() -> Parser:
                        help="file for the figures (build/bench.json)")
     speed.set_defaults(run=bench)
 
-    for command, only in ((one, "rtl; "), (many, "")):
+    for command, only in ((one, "rtl; "), (many, ""), (board, "")):
         command.add_argument("--lanes", type=whole, metavar="P",
                              help=f"edge processors of the circuit ({only}{LANES})")
         command.add_argument("--updates", type=whole, metavar="M",
                              help=f"nodes that the circuit updates in a cycle, 1 or 2 ({only}{UPDATES})")
+    for command in (one, many):
         command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
     return main
 
@@ -56,6 +64,12 @@ def parser() -> Parser:
 def whole(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"must be a whole number of at least 1, not {text!r}")
+    return int(text)
+
+
+def port_number(text: str) -> int:
+    if not text.isdecimal() or int(text) >= 1 << 16:
+        raise argparse.ArgumentTypeError(f"must be a whole number from 0 to {(1 << 16) - 1}, not {text!r}")
     return int(text)
 
 
@@ -70,12 +84,15 @@ def megahertz(text: str) -> float:
 
 
 def run(args) -> int:
-    from sim import folder, store
+    from sim import folder, store, terminal
     from sim.run import run
 
-    for option in ("lanes", "updates", "waves"):
-        if getattr(args, option) and args.backend != "rtl":
-            raise InputError(f"--{option} must go with --backend rtl, not {args.backend}")
+    only = dict.fromkeys(("lanes", "updates", "waves"), "rtl") | dict.fromkeys(("port", "baud"), "board")
+    for option, backend in only.items():
+        if getattr(args, option) and args.backend != backend:
+            raise InputError(f"--{option} must go with --backend {backend}, not {args.backend}")
+    if args.backend == "board" and not args.port:
+        raise InputError("--port must say where the board is (make doctor lists the ports of this machine)")
     if args.waves:
         waves.check(Path(f"waves.{args.waves}"))
     wanted = _circuit(args)[1] if args.backend == "rtl" else {}
@@ -83,8 +100,12 @@ def run(args) -> int:
     out = folder.claim(args.out, args.force)
     for suffix in waves.FORMATS:  # of an earlier run
         (out / f"waves.{suffix}").unlink(missing_ok=True)
-    with about(scene):
-        result = run(scene, args.backend, **wanted, waves=args.waves and out / f"waves.{args.waves}")
+    if args.backend == "board":
+        from sim.link.board import BAUD, Board
+
+        wanted["link"] = Board(args.port, args.baud or BAUD)
+    with about(scene), terminal.steps(scene, args.backend) as shown:
+        result = run(scene, args.backend, **wanted, waves=args.waves and out / f"waves.{args.waves}", progress=shown)
     store.save(scene, result, out)
     print(f"{scene.name}: {scene.steps} steps on {args.backend} in {result.seconds:.1f} s, "
           f"{len(scene.frames)} frames in {out / 'trajectory.npz'}")
@@ -121,6 +142,24 @@ def compare(args) -> int:
     for name, reason in wrong:
         print(f"error: {name}: {reason}", file=sys.stderr)
     return 1 if wrong else 0
+
+
+def serve(args) -> int:
+    from sim.link import serve as service
+    from sim.link.served import BAUD, CLOCK_HZ, SerialCircuit
+
+    parameters, _ = _circuit(args)
+    server = service.listener(args.port)
+    circuit = SerialCircuit(parameters, clock_hz=CLOCK_HZ, baud=BAUD, folder=machines.BUILD)
+    print(f"serving on socket://{service.HOST}:{server.getsockname()[1]} until it is interrupted", flush=True)
+    try:
+        service.serve(server, circuit)
+    except KeyboardInterrupt:
+        return 0
+    finally:
+        circuit.close()
+        server.close()
+    return 0
 
 
 def bench(args) -> int:

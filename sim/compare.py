@@ -11,7 +11,7 @@ import numpy as np
 
 from golden.problem import Scene
 from sim.face import watched
-from sim.run import BACKENDS, LANES, UPDATES, Result, run
+from sim.run import COMPARED, LANES, UPDATES, Result, run
 
 BOUND = {False: 1e-5, True: 5e-5}
 """Largest max_dx_rel that passes, without and with force-dependent dampers."""
@@ -62,7 +62,7 @@ def compare(scene: Scene, *, lanes: int = LANES, updates: int = UPDATES,
             progress: Callable[[str, int], object] | None = None) -> Comparison:
     """Run the scene on the three backends; ``progress(backend, steps done)`` as in `run`."""
     began, results = perf_counter(), []
-    for backend in BACKENDS:
+    for backend in COMPARED:
         told = partial(progress, backend) if progress else None
         if told:
             told(0)  # loading takes its time, the circuit's most of all

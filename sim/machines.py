@@ -49,13 +49,30 @@ def check_room(image: Image, parameters):
 
 @contextmanager
 def circuit(image: Image, parameters, waves: Path | None):
-    from sim.rtl import RtlMachine  # Amaranth and Verilator are slow to load
+    from sim.loaded import CircuitMachine
+    from sim.rtl import Circuit  # Amaranth and Verilator are slow to load
 
-    machine = RtlMachine(image, parameters=parameters, folder=BUILD, waves=waves)
+    check_room(image, parameters)
+    simulated = Circuit(parameters, BUILD, waves)
     try:
-        yield machine
+        yield CircuitMachine(image, simulated)
     finally:
-        machine.close()
+        simulated.close()
+
+
+@contextmanager
+def board(image: Image, link):
+    """The circuit behind a `sim.link.board.Board`."""
+    from sim.loaded import CircuitMachine
+
+    try:
+        try:
+            check_room(image, link.parameters)
+        except InputError as error:
+            raise InputError(f"{error}: choose a smaller object, or build a circuit that holds it") from None
+        yield CircuitMachine(image, link, verify=link.verify)
+    finally:
+        link.close()
 
 
 class Witness:

@@ -45,10 +45,14 @@ class Program:
     def load(self) -> Iterator[Write]:
         """Everything but what changes from phase to phase."""
         yield from self._control()
+        yield from self.materials()
+        yield from self._entries()
+
+    def materials(self) -> Iterator[Write]:
+        """What another material changes: coefficients, damper tables, natural lengths and ratios."""
         yield from self._materials()
         yield from self._tables()
         yield from self._edges()
-        yield from self._entries()
 
     def start(self, v: np.ndarray, x: np.ndarray | None = None) -> Iterator[Write]:
         """What a phase sets: velocities, loads and masses; positions too if given."""

@@ -1,17 +1,13 @@
-"""The emitted Verilog, simulated: the same face as `golden.machine.Machine`."""
+"""The emitted Verilog, simulated behind its host port."""
 
 import ctypes
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
 
-from golden.image import Image
 from hw.parameters import Parameters
-from hw.registers import NODE_FORCE, NODE_STATE, Control, Map, Region
 from hw.verilog import LANE, TOP, emit
 
-from .program import Program
 from .verilated import library, opened
 
 SHIM = Path(__file__).with_name("shim.cpp")
@@ -29,9 +25,16 @@ class Circuit:
         Where compiled circuits are kept.
     waves : Path, optional
         A ``.vcd`` or ``.fst`` file to record to.
+
+    Attributes
+    ----------
+    parameters : Parameters
+    faults : list of str
+        Names of the bits of its sticky faults.
     """
 
     def __init__(self, parameters: Parameters, folder: Path, waves: Path | None = None):
+        self.parameters = parameters
         text, core = emit(parameters)
         self.faults = core.faults
         trace = waves.suffix[1:] if waves else None
@@ -99,56 +102,3 @@ class Circuit:
         """Simulate until the run is over."""
         while self.run(CHUNK):
             pass
-
-
-class RtlMachine:
-    """The simulated circuit loaded with an image.
-
-    Attributes
-    ----------
-    x, v, ratio, force, faults
-        As of `golden.machine.Machine`; a fault counts 1 for each sticky flag that was set.
-    cycles : int
-        Clock cycles of all steps so far, by the circuit's own counter.
-    """
-
-    def __init__(self, image: Image, *, parameters: Parameters, folder: Path, waves: Path | None = None):
-        self._program = Program(image, parameters)
-        self._map, self._formats = Map(parameters), image.formats
-        self.circuit = Circuit(parameters, folder, waves)
-        self.circuit.write(self._program.load())
-        self.circuit.write(self._program.start(image.v, image.x))
-        self.faults, self.cycles = Counter(), 0
-        self.fetch()
-        self.force = np.zeros_like(image.x)
-
-    def restart(self, v: np.ndarray):
-        """New velocities, and the image's loads and masses as they are now."""
-        self.circuit.write(self._program.start(v))
-        self.v = v
-
-    def step(self, steps: int = 1):
-        self.circuit.write([(self._control(Control.RUN), steps)])
-        self.circuit.wait()
-        self.fetch()
-        cycles, faults = self.circuit.read([self._control(r) for r in (Control.CYCLES, Control.FAULTS)])
-        self.cycles += int(cycles)
-        self.faults |= Counter({name: 1 for bit, name in enumerate(self.circuit.faults) if int(faults) >> bit & 1})
-
-    def close(self):
-        self.circuit.close()
-
-    def _control(self, register):
-        return self._map.address(Region.CONTROL, 0, register)
-
-    def fetch(self):
-        """Read the object's state as the circuit has it now; refused while it runs."""
-        names = (*NODE_STATE, *NODE_FORCE)
-        addresses = [a for name in names for a in self._program.node_addresses(name)]
-        nodes = self._signed(self.circuit.read(addresses)).reshape(len(names), -1).T
-        self.x, self.v, self.force = (np.ascontiguousarray(nodes[:, k : k + 3]) for k in (0, 3, 6))
-        self.ratio = self._signed(self.circuit.read(self._program.edge_addresses("ratio")))
-
-    def _signed(self, words):
-        top = 1 << self._formats.state - 1
-        return (words.astype(np.int64) ^ top) - top

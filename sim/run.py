@@ -18,7 +18,8 @@ from sim import waves as waveforms
 from sim.image import Loaded
 from sim.units import Units
 
-BACKENDS = "float", "fixed", "rtl"
+COMPARED = "float", "fixed", "rtl"
+BACKENDS = *COMPARED, "board"
 LANES, UPDATES = 2, 1
 CHECKS = 10  # steps of a run that the NumPy model computes again, if there are as many frames
 REPORT_EVERY = 200  # steps between two calls of `progress`
@@ -69,6 +70,7 @@ def run(
     edge_order: np.ndarray | None = None,
     engine: str = "native",
     waves: Path | None = None,
+    link=None,
     progress: Callable[[int], object] | None = None,
 ) -> Result:
     """Run a scene on float64, on the integer model or on the simulated circuit, and keep its frames.
@@ -79,7 +81,8 @@ def run(
     Parameters
     ----------
     backend
-        "float" (`golden.model`), "fixed" (the integer model) or "rtl" (the circuit's Verilog under Verilator).
+        "float" (`golden.model`), "fixed" (the integer model), "rtl" (the circuit's Verilog under Verilator) or "board"
+        (a circuit behind a link).
     lanes, updates
         Edge processors and node updaters of the circuit; "rtl" only.
     edge_order
@@ -89,6 +92,8 @@ def run(
         again by the NumPy model; or "numpy", the NumPy model alone.
     waves
         File to which the circuit's waveforms are written (.fst or .vcd); "rtl" only.
+    link
+        The `sim.link.board.Board`; "board" only. It is closed in any case.
     progress
         Called with the number of steps done, every 200 steps and at every frame.
 
@@ -99,16 +104,17 @@ def run(
     InternalError
         If the compiled integer model disagrees with the NumPy model.
     """
-    _check(scene, backend, edge_order, engine, waves)
-    circuit = backend == "rtl"
-    parameters = machines.parameters(lanes, updates) if circuit else None
+    _check(scene, backend, edge_order, engine, waves, link)
+    circuit = backend in ("rtl", "board")
+    parameters = link.parameters if link else machines.parameters(lanes, updates) if circuit else None
     began = perf_counter()
     if backend == "float":
         trajectory = model.simulate(scene, progress)
         return Result("float", trajectory, perf_counter() - began)
 
     loaded = limits.load(scene, edge_order)
-    with (machines.circuit(loaded.image, parameters, waves) if circuit
+    with (machines.board(loaded.image, link) if link
+          else machines.circuit(loaded.image, parameters, waves) if circuit
           else machines.integer_model(loaded.image, engine)) as machine:
         witness = machines.Witness(loaded.image) if not circuit and engine != "numpy" else None
         frames = _frames(loaded, machine, witness, progress)
@@ -117,16 +123,19 @@ def run(
             backend, _trajectory(loaded, frames), perf_counter() - began, raw, loaded.units,
             faults={name: count for name, count in sorted(machine.faults.items()) if count},
             cycles=int(machine.cycles) if circuit else None,
-            lanes=lanes if circuit else None,
-            updates=updates if circuit else None,
+            lanes=parameters.lanes if circuit else None,
+            updates=parameters.updates if circuit else None,
         )
 
 
-def _check(scene, backend, edge_order, engine, waves):
+def _check(scene, backend, edge_order, engine, waves, link):
     if backend not in BACKENDS:
         raise InputError(f"backend must be one of {', '.join(BACKENDS)}, not {backend!r}")
     if engine not in machines.ENGINES:
         raise InputError(f"engine must be one of {', '.join(machines.ENGINES)}, not {engine!r}")
+    if (link is not None) != (backend == "board"):
+        raise InputError(f"link must go with the backend board, not {backend}" if link
+                         else "link must be given for the backend board")
     if waves is not None and backend != "rtl":
         raise InputError(f"waves must go with the backend rtl, not {backend}: only the circuit has signals")
     if waves is not None:

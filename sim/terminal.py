@@ -7,11 +7,11 @@ from contextlib import contextmanager
 
 from golden.problem import Scene
 from sim.compare import power, shortcomings
-from sim.run import BACKENDS
+from sim.run import COMPARED
 
 
 @contextmanager
-def progress(scenes: list[Scene]):
+def progress(scenes: list[Scene], backends=COMPARED):
     """Bars on stderr; gives ``shown(number, backend, steps done)``, or None where stderr is not a terminal."""
     if not sys.stderr.isatty():
         yield None
@@ -21,15 +21,22 @@ def progress(scenes: list[Scene]):
 
     columns = [TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[doing]:5}"), TimeElapsedColumn()]
     with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
-        tasks = [bars.add_task(scene.name, total=len(BACKENDS) * scene.steps, start=False, doing="")
+        tasks = [bars.add_task(scene.name, total=len(backends) * scene.steps, start=False, doing="")
                  for scene in scenes]
 
         def shown(number: int, backend: str, steps: int) -> None:
             bars.start_task(tasks[number])
-            before = BACKENDS.index(backend) * scenes[number].steps
+            before = backends.index(backend) * scenes[number].steps
             bars.update(tasks[number], completed=before + steps, doing=backend)
 
         yield shown
+
+
+@contextmanager
+def steps(scene: Scene, backend: str):
+    """A bar on stderr for one run; gives ``shown(steps done)``, or None where stderr is not a terminal."""
+    with progress([scene], (backend,)) as shown:
+        yield shown and (lambda done: shown(0, backend, done))
 
 
 HEAD = "scene", "dim", "nodes", "edges", "steps", "rtl=fixed", "max dx", "allowed", "max da", "saturated", "s", ""

@@ -57,10 +57,10 @@ def choose(scene: Scene, formats: Formats) -> Units:
     lowest = 1 - formats.displacement.int_bits  # a step must fit the displacement format
     shift = max(lowest, int(-np.ceil(log2(fastest * scene.dt / scene.size)))) if fastest else lowest
     velocity = 2.0**-shift * scene.size / scene.dt
-    trial = tuple(_power(expected_trial(scene, m, velocity)) for m in scene.materials)
+    trial = tuple(full_scale(expected_trial(scene, m, velocity)) for m in scene.materials)
     loads = [np.abs(p.load).max() + scene.mass.max() * np.abs(scene.gravity).max() for p in scene.phases]
     force = max(*(largest_share(m) * g for m, g in zip(scene.materials, trial, strict=True)), *loads)
-    return Units(scene.size, centre, scene.dt, shift, _power(force), trial)
+    return Units(scene.size, centre, scene.dt, shift, full_scale(force), trial)
 
 
 def expected_speed(scene: Scene) -> float:
@@ -90,5 +90,6 @@ def largest_share(material: Material) -> float:
     return 1 / (1 + material.c1 / material.c_max)
 
 
-def _power(x: float) -> float:
+def full_scale(x: float) -> float:
+    """The power of two that holds x."""
     return 2.0 ** ceil(log2(x)) if x > 0 else 1.0

@@ -7,7 +7,10 @@ from integer_objects import MATERIALS, irregular, pressed
 
 from golden.mesh import Mesh
 from hw.parameters import Parameters
+from sim.loaded import CircuitMachine
+from sim.machines import BUILD
 from sim.order import ranks
+from sim.rtl import Circuit
 
 STATE = "x", "v", "force", "ratio"
 
@@ -16,6 +19,11 @@ def circuit(lanes, updates=1):
     """All of as many updates have the same lane, which is compiled once; with two lanes and one update it is the
     circuit that scenes are run on."""
     return Parameters(lanes=lanes, updates=updates, edges=2048 * lanes)
+
+
+def rtl_machine(image, *, parameters, folder=BUILD, waves=None) -> CircuitMachine:
+    """The simulated circuit loaded with an image."""
+    return CircuitMachine(image, Circuit(parameters, folder, waves))
 
 
 def run(loaded, machine):

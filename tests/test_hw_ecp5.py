@@ -10,6 +10,7 @@ import pytest
 from amaranth.hdl import Fragment, signed, unsigned
 from family_twins import run
 from integer_objects import random_image
+from rtl_objects import rtl_machine
 from test_hw_multiplier import SHAPES, operands
 
 import sim.rtl
@@ -24,7 +25,6 @@ from hw.parameters import Parameters
 from hw.verilog import TOP, convert, modules
 from sim.machines import BUILD
 from sim.native import NativeMachine
-from sim.rtl import RtlMachine
 
 SMALL = Parameters(lanes=2, nodes=16, edges=20, materials=3, tables=1)
 CYCLES = 20_000
@@ -169,7 +169,7 @@ def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypa
     lane, top, core = emitted
     models = MODELS["ecp5"].read_text()
     monkeypatch.setattr(sim.rtl, "emit", lambda parameters: (top + lane + models, core))
-    circuit = RtlMachine(image, parameters=core.parameters, folder=BUILD)
+    circuit = rtl_machine(image, parameters=core.parameters, folder=BUILD)
     model = NativeMachine(image)
     for steps in (1, 3, 50):
         circuit.step(steps)

@@ -161,13 +161,13 @@ HELP = "(see python -m sim run --help)"
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ([], "the following arguments are required: run|compare|bench (see python -m sim --help)"),
-    (["walk"], "argument run|compare|bench: invalid choice: 'walk' (choose from 'run', 'compare', 'bench') "
-     "(see python -m sim --help)"),
+    ([], "the following arguments are required: run|compare|serve|bench (see python -m sim --help)"),
+    (["walk"], "argument run|compare|serve|bench: invalid choice: 'walk' (choose from 'run', 'compare', 'serve', "
+     "'bench') (see python -m sim --help)"),
     (["run", "s.toml", "--out", "o"], f"the following arguments are required: --backend {HELP}"),
     (["run", "s.toml", "--backend", "fixed"], f"the following arguments are required: --out {HELP}"),
     (["run", "s.toml", "--backend", "gpu", "--out", "o"], "argument --backend: invalid choice: 'gpu' "
-     f"(choose from 'float', 'fixed', 'rtl') {HELP}"),
+     f"(choose from 'float', 'fixed', 'rtl', 'board') {HELP}"),
     (["run", "s.toml", "--backend", "rtl", "--lanes", "0", "--out", "o"],
      f"argument --lanes: must be a whole number of at least 1, not '0' {HELP}"),
     (["run", "s.toml", "--backend", "rtl", "--lanes", "two", "--out", "o"],

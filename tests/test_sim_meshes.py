@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from integer_objects import MATERIALS, SPACING, irregular, pressed
-from rtl_objects import STATE, circuit, fan, renumbered
+from rtl_objects import STATE, circuit, fan, renumbered, rtl_machine
 
 from golden.mesh import Mesh, rectangle
 from hw.latency import Latencies
@@ -12,7 +12,6 @@ from sim.cycles import Wavefront, cycles_per_step
 from sim.image import load
 from sim.machines import BUILD
 from sim.native import NativeMachine
-from sim.rtl import RtlMachine
 from sim.speed import meshes
 from sim.speed.meshes import MESHES
 
@@ -70,7 +69,7 @@ def check(numbers, lanes, updates, seed):
     for number in numbers:
         object_ = image(np.random.default_rng([seed, number]), number)
         model, cycles = NativeMachine(object_), Wavefront(object_, parameters).run(STEPS)
-        machine = RtlMachine(object_, parameters=parameters, folder=BUILD)
+        machine = rtl_machine(object_, parameters=parameters, folder=BUILD)
         try:
             for steps in (1, STEPS):
                 before = machine.cycles
@@ -103,7 +102,7 @@ def test_three_hundred_meshes(lanes, updates, seed):
 def test_the_benchmarks_meshes_take_the_cycles_that_it_says(name, updates):
     scene = meshes.scene(name)
     parameters = Parameters(lanes=4, updates=updates, nodes=1024)
-    machine = RtlMachine(load(scene).image, parameters=parameters, folder=BUILD)
+    machine = rtl_machine(load(scene).image, parameters=parameters, folder=BUILD)
     try:
         runs = []
         for steps in (20, 21):

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from integer_objects import random_image
-from rtl_objects import STATE, assert_same, circuit, renumbered, run, scene
+from rtl_objects import STATE, assert_same, circuit, renumbered, rtl_machine, run, scene
 
 from golden.errors import InputError
 from golden.formats import Formats
@@ -18,7 +18,6 @@ from sim.machines import BUILD
 from sim.native import NativeMachine
 from sim.order import ranks
 from sim.program import Program
-from sim.rtl import RtlMachine
 
 LANES = 1, 2, 4
 
@@ -29,7 +28,7 @@ def simulated():
     machines = []
 
     def make(image, parameters, **kwargs):
-        machines.append(RtlMachine(image, parameters=parameters, folder=BUILD, **kwargs))
+        machines.append(rtl_machine(image, parameters=parameters, folder=BUILD, **kwargs))
         return machines[-1]
 
     yield make

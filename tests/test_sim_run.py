@@ -168,7 +168,9 @@ def test_progress(backend):
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ({"backend": "gpu"}, "backend must be one of float, fixed, rtl, not 'gpu'"),
+    ({"backend": "gpu"}, "backend must be one of float, fixed, rtl, board, not 'gpu'"),
+    ({"backend": "board"}, "link must be given for the backend board"),
+    ({"backend": "rtl", "link": object()}, "link must go with the backend board, not rtl"),
     ({"backend": "fixed", "engine": "fast"}, "engine must be one of native, numpy, not 'fast'"),
     ({"backend": "rtl", "lanes": 0}, "lanes must be a whole number from 1 to 8, not 0"),
     ({"backend": "rtl", "lanes": 2.0}, "lanes must be a whole number from 1 to 8, not 2.0"),

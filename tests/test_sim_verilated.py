@@ -7,12 +7,12 @@ from types import SimpleNamespace
 
 import pytest
 from integer_objects import random_image
+from rtl_objects import rtl_machine
 
 import sim.rtl
 import sim.verilated
 from golden.errors import InputError
 from hw.parameters import Parameters
-from sim.rtl import RtlMachine
 from sim.verilated import library
 from sim.waves import HEADERS, found
 
@@ -101,7 +101,7 @@ def test_a_damaged_library_is_named(stub, tmp_path, monkeypatch, rng):
     broken.write_bytes(b"\x7fELF and then nothing")
     monkeypatch.setattr(sim.rtl, "library", lambda *args, **kwargs: broken)
     with pytest.raises(InputError) as refused:
-        RtlMachine(random_image(rng), parameters=TINY, folder=tmp_path)
+        rtl_machine(random_image(rng), parameters=TINY, folder=tmp_path)
     assert str(refused.value) == f"{broken} must be a library, but is damaged: delete it, and it will be built again"
 
 
@@ -111,7 +111,7 @@ def test_waveforms_are_recorded(form, stub, tmp_path, rng):
     if lacking:
         pytest.skip(f"a library is not installed (Debian: apt install {' '.join(lacking)})")
     waves = tmp_path / f"run.{form}"
-    machine = RtlMachine(random_image(rng), parameters=TINY, folder=tmp_path, waves=waves)
+    machine = rtl_machine(random_image(rng), parameters=TINY, folder=tmp_path, waves=waves)
     machine.step(1)
     machine.close()
     machine.close()  # twice is as good as once

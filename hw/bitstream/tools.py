@@ -30,8 +30,9 @@ class Chain(NamedTuple):
 
 
 # The modules that stay apart are those of hw/timing/tools.py, so that what is timed is what is built. Gowin's synthesis
-# would take the ports of such a module for pins. Nothing relies on what a read returns of a word that is written in the same cycle
-# (hw/families/ecp5.v spoils it in simulation), so that generic memories may be block RAMs which leave that open
+# would take the ports of such a module for pins. Nothing relies on what a read returns of a word that is written in the
+# same cycle (hw/families/ecp5.v spoils it in simulation), so that generic memories may be block RAMs which leave that
+# open
 APART = f"setattr -mod -set keep_hierarchy 1 {TOP} {' '.join(OWN)}\n"
 CHAINS = {
     "ecp5": Chain(

