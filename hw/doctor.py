@@ -10,8 +10,6 @@ from pathlib import Path
 
 from msgspec import Struct, to_builtins
 
-import environment
-
 from . import flash
 
 ROOT = Path(__file__).parents[1]
@@ -53,6 +51,8 @@ def run(args) -> int:
 
 def system() -> Iterator[Finding]:
     """What pip can't bring."""
+    import environment  # of the checkout: all other commands do without
+
     yield _finding("Python", environment.VERSION, "")  # an old one has been refused before
     for what, package, there in environment.checked():
         yield _finding(what, "there" if there else None, environment.install_it(package))
