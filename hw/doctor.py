@@ -51,7 +51,7 @@ def run(args) -> int:
 
 def system() -> Iterator[Finding]:
     """What pip can't bring."""
-    import environment  # of the checkout: packages alone do without
+    import environment  # of the checkout: all other commands do without
 
     yield _finding("Python", environment.VERSION, "")  # an old one has been refused before
     for what, package, there in environment.checked():

@@ -77,7 +77,7 @@ class FrameSender(wiring.Component):
             answers.address.eq(Cat(place[: len(self.write_place)], answer)),
             whole.eq(length + CRC_BYTES),
             byte.eq(Mux(place < length, answers.data, crc.crc.word_select((place - length)[:2], 8))),
-            crc.data.eq(byte),
+            crc.data.eq(answers.data),  # no byte of the CRC goes into it
             here.eq(wait == 0),  # the byte is that of the place
         ]
         with m.If(~here):
@@ -133,12 +133,13 @@ class FrameSender(wiring.Component):
         return m
 
     def _queue(self, m, sent):
-        """The answer that is sent next, or just now, and its length."""
+        """The answer that is sent next, or just now, and its length: in registers, of which much depends. They have
+        them in the cycle after one of ``waits`` is set, or after ``next_out`` has moved on."""
         order = Array(Signal(range(ANSWERS), name=f"order_{n}") for n in range(ANSWERS))
         lengths = Array(Signal.like(self.length, name=f"length_{n}") for n in range(ANSWERS))
         next_in, next_out = Signal(range(ANSWERS)), Signal(range(ANSWERS))
         answer, length = Signal.like(self.answer), Signal.like(self.length)
-        m.d.comb += [answer.eq(order[next_out]), length.eq(lengths[answer])]
+        m.d.sync += [answer.eq(order[next_out]), length.eq(lengths[order[next_out]])]
         known = (self.length != 0) | (lengths[self.answer] != 0)
         with m.If(self.send & known & ~self.waits.bit_select(self.answer, 1)):
             with m.If(self.length != 0):
