@@ -2,7 +2,8 @@
 
 from . import Limits
 
-# Of the data sheet, FPGA-DS-02012, "sysCLOCK PLL Timing", as LiteX and Project Trellis's ecppll have them as well
+# As LiteX and Project Trellis's ecppll have them, but for the phase detector's, which is from memory. The data sheet,
+# FPGA-DS-02012, "sysCLOCK PLL Timing", was not at hand
 LIMITS = Limits(
     "ecp5", oscillator=(8, 400), phase=(10, 400), oscillation=(400, 800), clock=(3.125, 400),
     divide=(1, 128), multiply=(1, 80), output=(1, 128),

@@ -2,7 +2,8 @@
 
 from . import Limits
 
-# Of the data sheet, DS181, for the slowest speed grade
+# For the slowest speed grade: the oscillation as LiteX has it, phase detector, clock and dividers from memory. The data
+# sheet, DS181, was not at hand; the vendor's tool refuses what is beyond it
 LIMITS = Limits(
     "xilinx", oscillator=(19, 800), phase=(19, 450), oscillation=(800, 1600), clock=(6.25, 464),
     divide=(1, 56), multiply=(2, 64), output=(1, 128),
