@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
-
 from .. import boards
-from ..boards import Board, shares
+from ..boards import Board, Circuit, shares
 from ..parameters import Parameters
 
 KEPT = boards.FOLDER / "builds"
 SIZES = tuple(Parameters.RANGES)
 
 
-class Build(Struct, forbid_unknown_fields=True, kw_only=True):
+class Build(Circuit, forbid_unknown_fields=True, kw_only=True):
     board: str
-    lanes: int
-    updates: int
-    nodes: int
-    edges: int
-    materials: int
-    tables: int
     clock_mhz: float  # what the PLL gives
     baud: int
     lut: int

@@ -10,7 +10,7 @@ from msgspec import Struct
 from golden.files import write_text
 
 from .. import boards
-from ..boards import Board, Limits, shares
+from ..boards import Board, Circuit, Limits, shares
 from ..cells import Sizes
 from ..parameters import Parameters
 from .report import Step
@@ -19,14 +19,8 @@ KEPT = boards.FOLDER / "timing"
 PARAMETERS = tuple(Parameters.RANGES)
 
 
-class Result(Struct, forbid_unknown_fields=True, kw_only=True):
+class Result(Circuit, forbid_unknown_fields=True, kw_only=True):
     board: str
-    lanes: int
-    updates: int
-    nodes: int
-    edges: int
-    materials: int
-    tables: int
     grade: int
     seeds: list[int]
     fmax_mhz: list[float]
