@@ -13,7 +13,7 @@ from .link.top import LINKED, Linked
 from .parameters import Parameters
 from .pins import check
 from .pll import ecp5, none, xilinx
-from .verilog import convert, emit
+from .verilog import Placed, convert, emit
 
 BOARD, CLOCK = "rheogate_board", "rheogate_clock"
 """Names of the board's top and of the module that makes its clock."""
@@ -22,18 +22,6 @@ ALWAYS = {"clk": In(1), "rx": In(1), "tx": Out(1, init=1)}
 IF_THERE = {"reset": In(1), "busy": Out(1), "locked": Out(1)}
 HELD = 16
 """Cycles that the reset lasts after its cause is gone."""
-
-
-class PlacedLinked(wiring.Component):
-    """The circuit behind its link as an instance of the Verilog module that is made from it elsewhere."""
-
-    module = LINKED
-
-    def __init__(self, linked: Linked):
-        super().__init__(linked.signature)
-
-    def elaborate(self, platform):
-        return Module()
 
 
 class HeldReset(wiring.Component):
@@ -91,7 +79,7 @@ class BoardTop(wiring.Component):
         m.submodules.held = held = HeldReset()
         button = self._active("reset", self.reset) if "reset" in self._pins else 0
         m.d.comb += [held.cause.eq(~locked | button), ClockSignal().eq(clock), ResetSignal().eq(held.reset)]
-        m.submodules.linked = linked = PlacedLinked(self._linked)
+        m.submodules.linked = linked = Placed(LINKED, self._linked.signature)
         m.d.comb += [linked.rx.eq(self.rx), self.tx.eq(linked.tx)]
         for name, state in (("busy", linked.busy), ("locked", locked)):
             if name in self._pins:

@@ -19,34 +19,25 @@ TOP = "rheogate"
 LANE = "rheogate_lane"
 
 
-class PlacedLane(wiring.Component):
-    """A lane as an instance of the Verilog module that is made from it elsewhere."""
+class Placed(wiring.Component):
+    """An instance of a Verilog module that is made elsewhere."""
 
-    module = LANE
-
-    def __init__(self, parameters: Parameters, datapath: EdgeDatapath):
-        super().__init__(members(parameters, datapath))
-
-    def elaborate(self, platform):
-        return Module()
-
-
-class PlacedCore(wiring.Component):
-    """The circuit as an instance of the Verilog module that is made from it elsewhere."""
-
-    module = TOP
-
-    def __init__(self, core: Core):
-        super().__init__(core.signature)
+    def __init__(self, module: str, signature):
+        self.module = module
+        super().__init__(signature)
 
     def elaborate(self, platform):
         return Module()
+
+
+def placed_lane(parameters: Parameters, datapath: EdgeDatapath) -> Placed:
+    return Placed(LANE, members(parameters, datapath))
 
 
 @cache
 def modules(parameters: Parameters) -> tuple[str, str, Core]:
     """(Verilog of `LANE`, Verilog of `TOP`, the circuit they were made from), with what each is made of."""
-    core, platform = Core(parameters, PlacedLane), FAMILIES[parameters.family]
+    core, platform = Core(parameters, placed_lane), FAMILIES[parameters.family]
     return convert(Lane(parameters, core.datapath), LANE, platform), convert(core, TOP, platform), core
 
 

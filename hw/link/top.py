@@ -9,7 +9,7 @@ from ..description import key
 from ..families import FAMILIES
 from ..host import host_signature
 from ..parameters import Parameters
-from ..verilog import PlacedCore, convert, emit
+from ..verilog import TOP, Placed, convert, emit
 from .device import Device
 from .identity import Identity
 from .uart import Receiver, Transmitter, cycles_per_bit
@@ -48,7 +48,7 @@ class Linked(wiring.Component):
 
     def elaborate(self, platform):
         m, state = Module(), self._core.parameters.formats.state
-        m.submodules.core = core = PlacedCore(self._core)
+        m.submodules.core = core = Placed(TOP, self._core.signature)
         m.submodules.device = device = Device(key=self.key, identity=self.identity.items, state=state)
         m.submodules.receiver = receiver = Receiver(self._bit_cycles)
         m.submodules.transmitter = transmitter = Transmitter(self._bit_cycles)

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ..core import Core
 from ..parameters import Parameters
-from ..verilog import PlacedCore, convert, emit
+from ..verilog import TOP, Placed, convert, emit
 
 FRAME, CORE = "timing", "core"
 """Names of the frame's module and of the circuit in it."""
@@ -34,7 +34,7 @@ class Frame(wiring.Component):
         m.d.sync += reset.eq(Cat(self.reset, reset))
         m.d.comb += [ClockSignal().eq(self.clk), ResetSignal().eq(reset[1])]
 
-        m.submodules[CORE] = core = PlacedCore(self._core)
+        m.submodules[CORE] = core = Placed(TOP, self._core.signature)
         ports = [(member.flow, port) for _, member, port in core.signature.flatten(core)]
         inputs, outputs = (Cat(port for flow, port in ports if flow == wanted) for wanted in (In, Out))
         feed = Signal(len(inputs), reset_less=True)
