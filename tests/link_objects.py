@@ -1,11 +1,9 @@
 """Bytes into the link's parts and out of them, cycle by cycle."""
 
 from hw.blocks.memory import READ_LATENCY
-from hw.link.receive import EVENTS
+from hw.link.receive import BYTE_CYCLES, EVENTS
 
 KEY = bytes(range(0xA0, 0xA8))
-PAUSE = 12
-"""Cycles from a byte to the next."""
 
 
 async def feed(ctx, receiver, line: bytes, seen: dict[str, int]):
@@ -17,7 +15,7 @@ async def feed(ctx, receiver, line: bytes, seen: dict[str, int]):
             seen[event] += ctx.get(getattr(receiver, event))
         await ctx.tick()
         ctx.set(receiver.valid, 0)
-        for _ in range(PAUSE - 1):
+        for _ in range(BYTE_CYCLES - 1):
             for event in EVENTS:
                 seen[event] += ctx.get(getattr(receiver, event))
             await ctx.tick()
@@ -36,4 +34,5 @@ async def taken(ctx, receiver):
     ctx.set(receiver.take, 1)
     await ctx.tick()
     ctx.set(receiver.take, 0)
+    await ctx.tick()
     return *header, bytes(payload)

@@ -7,11 +7,12 @@ from pathlib import Path
 from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
-from link_objects import KEY, PAUSE
+from link_objects import KEY
 
 from hw.core import Core
 from hw.link.device import Device
 from hw.link.frame import Frame, unpacked
+from hw.link.receive import BYTE_CYCLES
 from hw.parameters import Parameters
 from hw.registers import MAGIC
 from hw.verilog import convert
@@ -73,7 +74,7 @@ class Line:
     def send(self, line: bytes, cycles: int) -> bytes:
         """What comes out while these bytes go in, and so many cycles after."""
         out = ctypes.create_string_buffer(ROOM)
-        came = self._run(self._handle, line, len(line), PAUSE, cycles, out, ROOM)
+        came = self._run(self._handle, line, len(line), BYTE_CYCLES, cycles, out, ROOM)
         assert came <= ROOM
         return out.raw[:came]
 

@@ -31,8 +31,9 @@ def test_frames_one_after_the_other(type_, keyed, rng):
                     assert ctx.get(dut.crc) == expected
                 await ctx.tick()
                 ctx.set(dut.valid, 0)
-            assert ctx.get(dut.match)
-            assert cycles == KEY_BYTES * keyed
+            await ctx.tick()
+            assert ctx.get(dut.ready) and ctx.get(dut.match)
+            assert cycles == KEY_BYTES * keyed + number
 
     simulate(dut, bench)
 

@@ -41,6 +41,24 @@ def test_frames_wait_for_their_turn_and_the_one_too_many_is_dropped(rng):
     assert got == [(2, n, payload) for n, payload in enumerate(payloads[:SLOTS])]
 
 
+def test_a_frame_for_which_room_comes_too_late_is_dropped(rng):
+    """Its first bytes found none."""
+    dut, seen = FrameReceiver(KEY), Counter()
+    frames = [(2, n, rng.bytes(20)) for n in range(SLOTS + 2)]
+    packed = [Frame(type_, n, payload=payload).packed(KEY) for type_, n, payload in frames]
+
+    async def bench(ctx):
+        await feed(ctx, dut, b"".join(packed[:SLOTS]) + packed[SLOTS][:12], seen)
+        assert await taken(ctx, dut) == frames[0]
+        await feed(ctx, dut, packed[SLOTS][12:] + packed[SLOTS + 1], seen)
+        for frame in (*frames[1:SLOTS], frames[SLOTS + 1]):
+            assert await taken(ctx, dut) == frame
+        assert not ctx.get(dut.frame)
+
+    simulate(dut, bench)
+    assert +seen == {"good_frames": SLOTS + 1, "overruns": 1}
+
+
 @pytest.mark.parametrize(("type_", "good"), [(GREETING, True), (2, False)])
 def test_only_a_greeting_is_understood_with_another_key(type_, good):
     line = Frame(type_, 0, payload=b"hello").packed(bytes(8))

@@ -31,6 +31,7 @@ async def asked(ctx, dut, number, length):
     ctx.set(dut.send, 1)
     await ctx.tick()
     ctx.set(dut.send, 0)
+    await ctx.tick()
 
 
 async def line(ctx, dut, rng, slow=0.3) -> bytes:

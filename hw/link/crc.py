@@ -20,7 +20,8 @@ class FrameCrc(wiring.Component):
     start : In(1)
         The next byte is a frame's first.
     valid : In(1), data : In(8), ready : Out(1)
-        A byte is taken in a cycle in which both are 1: the first keeps the next waiting for `KEY_BYTES` cycles.
+        A byte is taken in a cycle in which both are 1, and keeps the next waiting for a cycle; a frame's first for
+        `KEY_BYTES` more.
     crc : Out(32), match : Out(1)
         Of the bytes so far, when ``ready``; whether the last four of them are the CRC of those before.
     """
@@ -43,23 +44,23 @@ class FrameCrc(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.crc = crc = CRC(data_width=8).create()
-        first, keyed, number, waiting = Signal(init=1), Signal(), Signal(range(KEY_BYTES + 1)), Signal(8)
-        key, taken, keying = Array(self._key), Signal(), number != 0
+        first, begins, byte, waits = Signal(init=1), Signal(), Signal(8), Signal()
+        keyed, number = Signal(), Signal(range(KEY_BYTES))  # the key goes before the byte that waits
         m.d.comb += [
-            self.ready.eq(~keying),
-            taken.eq(self.valid & self.ready),
-            keyed.eq(taken & first & ((self.data & ~ANSWER) != GREETING)),
-            crc.start.eq(taken & first),
-            crc.valid.eq(taken | keying),
-            crc.data.eq(Mux(keyed, key[0], self.data)),
+            self.ready.eq(~waits),
+            crc.start.eq(waits & begins),
+            crc.valid.eq(waits),
+            crc.data.eq(Mux(keyed, Array(self._key)[number], byte)),
             self.crc.eq(crc.crc),
             self.match.eq(crc.match_detected),
         ]
-        with m.If(taken):
-            m.d.sync += [first.eq(0), waiting.eq(self.data), number.eq(keyed)]
-        with m.If(keying):
-            m.d.comb += crc.data.eq(Mux(number == KEY_BYTES, waiting, key[number[: (KEY_BYTES - 1).bit_length()]]))
-            m.d.sync += number.eq(Mux(number == KEY_BYTES, 0, number + 1))
+        with m.If(waits):
+            m.d.sync += [begins.eq(0), waits.eq(keyed), number.eq(0)]
+            with m.If(keyed):
+                m.d.sync += [number.eq(number + 1), keyed.eq(number != KEY_BYTES - 1)]
+        with m.Elif(self.valid):
+            m.d.sync += [byte.eq(self.data), waits.eq(1), begins.eq(first), first.eq(0)]
+            m.d.sync += keyed.eq(first & ((self.data & ~ANSWER) != GREETING))
         with m.If(self.start):
             m.d.sync += first.eq(1)
         return m

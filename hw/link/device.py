@@ -92,29 +92,30 @@ class Device(wiring.Component):
         return m
 
     def _port(self, m):
-        """Who of them uses the host port does so alone; the link's own registers answer beside it."""
+        """Who of them uses the host port does so alone; the link's own registers answer beside it. Registers on both
+        ways: the circuit is large, and may be far away."""
         walker, pauser, registers = self._walker, self._pauser, self._registers
-        own = Signal()
+        own = walker.port_address[-REGION_BITS:] == LINK
         m.d.comb += [
-            own.eq(walker.port_address[-REGION_BITS:] == LINK),
             registers.request.eq(walker.port_request & own),
             registers.write.eq(walker.port_write),
             registers.index.eq(walker.port_address[:INDEX_BITS]),
             registers.data.eq(walker.port_write_data),
-            self.port_request.eq(pauser.port_request | self._faults | walker.port_request & ~own),
         ]
+        m.d.sync += self.port_request.eq(pauser.port_request | self._faults | walker.port_request & ~own)
         with m.If(pauser.port_request):
             for name in ("write", "address", "write_data"):
-                m.d.comb += getattr(self, f"port_{name}").eq(getattr(pauser, f"port_{name}"))
+                m.d.sync += getattr(self, f"port_{name}").eq(getattr(pauser, f"port_{name}"))
         with m.Elif(self._faults):
-            m.d.comb += self.port_address.eq(join(Region.CONTROL, 0, Control.FAULTS, 0))
+            m.d.sync += [self.port_write.eq(0), self.port_address.eq(join(Region.CONTROL, 0, Control.FAULTS, 0))]
         with m.Else():
             for name in ("write", "address", "write_data"):
-                m.d.comb += getattr(self, f"port_{name}").eq(getattr(walker, f"port_{name}"))
+                m.d.sync += getattr(self, f"port_{name}").eq(getattr(walker, f"port_{name}"))
         for name in ("answer", "error", "read_data"):
             theirs = getattr(self, f"port_{name}")
-            m.d.comb += getattr(pauser, f"port_{name}").eq(theirs)
-            m.d.comb += getattr(walker, f"port_{name}").eq(Mux(registers.answer, getattr(registers, name), theirs))
+            given = Signal.like(theirs, name=f"given_{name}")
+            m.d.sync += given.eq(Mux(registers.answer, getattr(registers, name), theirs))
+            m.d.comb += [getattr(user, f"port_{name}").eq(given) for user in (pauser, walker)]
 
     def _commands(self, m):
         with m.FSM():
@@ -130,21 +131,27 @@ class Device(wiring.Component):
         """What becomes of a command, by its seq."""
         receiver, sender, registers, greets = self._receiver, self._sender, self._registers, self._greets
         self._session, self._expected, self._status = Signal(), Signal(8), Signal(Status)
-        early, free = Signal(8), Signal()
+        early, due, done, free = Signal(8), Signal(), Signal(), Signal()
         m.d.comb += early.eq(receiver.seq - self._expected)
-        m.d.comb += free.eq(~sender.waits.bit_select(receiver.seq[: len(sender.answer)], 1))
+        m.d.sync += [
+            due.eq(greets | ~self._session | (early == 0)),
+            done.eq(early >= 256 - WINDOW),
+            free.eq(~sender.waits.bit_select(receiver.seq[: len(sender.answer)], 1)),
+        ]
         with m.State("idle"):
             m.d.comb += [self._emitter.begin.eq(1), self._emitter.at.eq(HEADER.size + ITEM_BYTES)]
             m.d.sync += self._status.eq(Status.DONE)
             with m.If(registers.halt):
                 m.d.comb += self._pauser.halt.eq(1)
                 m.next = "halting"
-            with m.Elif(receiver.frame & (greets | ~self._session | (early == 0))):
-                with m.If(free):
-                    m.d.comb += self._walker.look.eq(1)
-                    m.next = "looking"
             with m.Elif(receiver.frame):
-                done = early >= 256 - WINDOW
+                m.next = "choice"
+        with m.State("choice"):
+            m.next = "idle"
+            with m.If(due & free):
+                m.d.comb += self._walker.look.eq(1)
+                m.next = "looking"
+            with m.Elif(~due):
                 m.d.comb += [sender.send.eq(done), receiver.take.eq(1)]
                 m.d.comb += [registers.duplicates.eq(done), registers.gaps.eq(~done)]
         with m.State("halting"):
@@ -219,8 +226,8 @@ class Device(wiring.Component):
                 m.next = "faulty"
         with m.State("faulty"):
             m.d.comb += emitter.at.eq(HEADER.size)
-            with m.If(self.port_answer):
-                m.d.sync += [faults.eq(self.port_read_data), length.eq(emitter.place), number.eq(0)]
+            with m.If(walker.port_answer):
+                m.d.sync += [faults.eq(walker.port_read_data), length.eq(emitter.place), number.eq(0)]
                 m.d.comb += emitter.begin.eq(1)
                 m.next = "seal"
         with m.State("seal"):

@@ -1,6 +1,6 @@
 """A run that pauses with its step and goes on afterwards, and one that ends because the host is silent."""
 
-from amaranth.hdl import Module, Mux, Signal
+from amaranth.hdl import Module, Mux, Signal, signed
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -37,6 +37,7 @@ class Pause(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         run, left = Signal.like(self.steps), Signal.like(self.steps)
+        rest = Signal(signed(len(run) + 1))
         with m.If(self.noted):
             m.d.sync += [run.eq(self.steps), left.eq(0)]
 
@@ -66,10 +67,12 @@ class Pause(wiring.Component):
                 with m.If(~self.busy):
                     ask(Control.STEPS_DONE, "counted")
             with m.State("counted"):
+                m.d.sync += rest.eq(run - self.port_read_data[: len(run)])
                 with m.If(self.port_answer):
-                    done = self.port_read_data[: len(run)]
-                    m.d.sync += left.eq(Mux(run > done, run - done, 0))
-                    m.next = "done"
+                    m.next = "rest"
+            with m.State("rest"):
+                m.d.sync += left.eq(Mux(rest < 0, 0, rest))
+                m.next = "done"
             with m.State("asked"):
                 with m.If(self.port_answer):
                     m.next = "done"

@@ -6,10 +6,13 @@ from amaranth.lib.wiring import In, Out
 
 from ..blocks.memory import BlockRam
 from .crc import FrameCrc
-from .frame import HEADER, LEAST, MOST, PAYLOAD_MOST
+from .frame import HEADER, KEY_BYTES, LEAST, MOST, PAYLOAD_MOST
 
 SLOTS = 4
 """Frames there is room for: one that comes, those that wait, one that is worked on."""
+
+BYTE_CYCLES = KEY_BYTES + 6
+"""Cycles from a byte to the next, at least: the key has to be gone through, and all is compared in cycles of its own."""
 
 EVENTS = "good_frames", "line_errors", "breaks", "cobs_errors", "length_errors", "crc_errors", "overruns"
 """What may become of the bytes between two zeros; and a break, which is none."""
@@ -30,7 +33,7 @@ class FrameReceiver(wiring.Component):
     Members
     -------
     valid : In(1), data : In(8)
-        A byte, every `KEY_BYTES` + 4 cycles at the most.
+        A byte, every `BYTE_CYCLES` at the most.
     error : In(1), broken : In(1)
         As of `hw.link.uart.Receiver`.
     frame : Out(1), type : Out(8), seq : Out(8), length : Out
@@ -38,9 +41,9 @@ class FrameReceiver(wiring.Component):
     place : In, byte : Out(8)
         A byte of its payload, `hw.blocks.memory.READ_LATENCY` cycles after its place.
     take : In(1)
-        The frame has been worked on: another may come. Only while ``frame``.
+        The frame has been worked on. Only while ``frame``; the next comes two cycles later.
     <event> : Out(1)
-        For one cycle.
+        For one cycle, that after the byte or the break.
     """
 
     def __init__(self, key: bytes):
@@ -72,30 +75,35 @@ class FrameReceiver(wiring.Component):
             m.d.sync += count.eq(count + 1)
         header = self._header(m, decoded, byte, count)
         length = Cat(header[4], header[5])
-        crc_ok = self._crc(m, decoded, byte, ends)
+        crc_match = self._crc(m, decoded, byte, ends)
         room = self._store(m, decoded, byte, count, header)
 
-        some, bad_line = Signal(), Signal()
+        some, bad_line, bad_length, bad_crc, lost = (
+            Signal(name=name) for name in ("some", "bad_line", "bad_length", "bad_crc", "lost")
+        )
+        m.d.sync += [bad_length.eq((count < LEAST) | (count != length + LEAST)), bad_crc.eq(~crc_match)]
         with m.If(ends):
-            m.d.sync += [count.eq(0), some.eq(0), bad_line.eq(0)]
-        with m.Elif(self.valid | self.error):
-            m.d.sync += [some.eq(1), bad_line.eq(bad_line | self.error)]
+            m.d.sync += [count.eq(0), some.eq(0), bad_line.eq(0), lost.eq(0)]
+        with m.Else():
+            m.d.sync += lost.eq(lost | decoded & ~room)
+            with m.If(self.valid | self.error):
+                m.d.sync += [some.eq(1), bad_line.eq(bad_line | self.error)]
         verdicts = (
             ("line_errors", bad_line | self.broken),
             ("cobs_errors", bad_cobs),
-            ("length_errors", (count < LEAST) | (count != length + LEAST)),
-            ("crc_errors", ~crc_ok),
-            ("overruns", ~room),
+            ("length_errors", bad_length),
+            ("crc_errors", bad_crc),
+            ("overruns", lost),
         )
+        m.d.sync += [*(getattr(self, event).eq(0) for event in EVENTS), self.breaks.eq(self.broken)]
         with m.If(ends & some):
             with m.If(verdicts[0][1]):
-                m.d.comb += self.line_errors.eq(1)
+                m.d.sync += self.line_errors.eq(1)
             for event, applies in verdicts[1:]:
                 with m.Elif(applies):
-                    m.d.comb += getattr(self, event).eq(1)
+                    m.d.sync += getattr(self, event).eq(1)
             with m.Else():
-                m.d.comb += self.good_frames.eq(1)
-        m.d.comb += self.breaks.eq(self.broken)
+                m.d.sync += self.good_frames.eq(1)
         return m
 
     def _decode(self, m, ends):
@@ -127,24 +135,28 @@ class FrameReceiver(wiring.Component):
         return crc.match
 
     def _store(self, m, decoded, byte, count, header):
-        """Payloads one behind the other in a memory, headers in registers; whether there is room for this one."""
+        """Payloads one behind the other in a memory, headers in registers; whether there is room for a byte."""
         m.submodules.payloads = payloads = BlockRam(width=8, depth=SLOTS * PAYLOAD_MOST)
         coming, worked, waiting = Signal(range(SLOTS)), Signal(range(SLOTS)), Signal(range(SLOTS + 1))
         room, place = Signal(), Signal(range(MOST + 2))
         kept = [Signal(24 + 8, name=f"kept_{slot}") for slot in range(SLOTS)]
         first = Array(kept)[worked]
         m.d.comb += [
-            room.eq(waiting != SLOTS),
             place.eq(count - HEADER.size),
+            payloads.address.eq(Cat(self.place, worked)),
+            self.byte.eq(payloads.data),
+        ]
+        m.d.sync += [
+            room.eq(waiting != SLOTS),
             payloads.write.eq(decoded & (count >= HEADER.size) & (place < PAYLOAD_MOST) & room),
             payloads.write_address.eq(Cat(place[: len(self.place)], coming)),
             payloads.write_data.eq(byte),
-            payloads.address.eq(Cat(self.place, worked)),
-            self.byte.eq(payloads.data),
-            self.frame.eq(waiting != 0),
-            Cat(self.type, self.seq, self.length).eq(first),
         ]
         with m.If(self.good_frames):
             m.d.sync += [Array(kept)[coming].eq(Cat(header[0], header[1], header[4], header[5])), coming.eq(coming + 1)]
         m.d.sync += [waiting.eq(waiting + self.good_frames - self.take), worked.eq(worked + self.take)]
+        with m.If(self.take):
+            m.d.sync += self.frame.eq(0)
+        with m.Elif(~self.frame & (waiting != 0)):
+            m.d.sync += [self.frame.eq(1), Cat(self.type, self.seq, self.length).eq(first)]
         return room

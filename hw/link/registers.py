@@ -50,7 +50,7 @@ assert [counter.name.lower() for counter in COUNTERS[1:-2]] == list(EVENTS)
 
 
 class LinkRegisters(wiring.Component):
-    """Answers a request in the next cycle. Counters go round at 2^32 and are cleared by any write.
+    """Answers a request two cycles later. Counters go round at 2^32 and are cleared by any write.
 
     Parameters
     ----------
@@ -91,18 +91,23 @@ class LinkRegisters(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        lawful = Signal()
-        m.d.comb += lawful.eq((self.index < len(Link)) & ~(self.write & self.data[BITS:].any()))
+        lawful = (self.index < len(Link)) & ~(self.write & self.data[BITS:].any())
         registers = [Signal(BITS, name=register.name.lower()) for register in Link]
-        writes = [self.request & self.write & lawful & (self.index == register) for register in Link]
+        request, error, index, data = Signal(), Signal(), Signal(range(len(Link))), Signal(BITS)
+        writes = Signal(len(Link))
         m.d.sync += [
-            self.answer.eq(self.request),
-            self.error.eq(self.request & ~lawful),
-            self.read_data.eq(Mux(lawful, Array(registers)[self.index[: (len(Link) - 1).bit_length()]], 0)),
+            request.eq(self.request),
+            error.eq(self.request & ~lawful),
+            index.eq(self.index),
+            data.eq(self.data),
+            *(writes[register].eq(self.request & self.write & lawful & (self.index == register)) for register in Link),
+            self.answer.eq(request),
+            self.error.eq(error),
+            self.read_data.eq(Mux(error, 0, Array(registers)[index])),
         ]
         most = registers[Link.WATCHDOG]
         with m.If(writes[Link.WATCHDOG]):
-            m.d.sync += most.eq(self.data)
+            m.d.sync += most.eq(data)
         for counter in COUNTERS:
             happens = self.halted if counter == Link.HALTS else getattr(self, counter.name.lower())
             m.d.sync += registers[counter].eq(Mux(writes[counter], 0, registers[counter] + happens))

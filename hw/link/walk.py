@@ -69,11 +69,26 @@ class Walker(wiring.Component):
         self._position, self._given = Signal(range(FARTHEST + 1)), Signal(range(1 << 15))
         self._word, self._number, self._wait = Signal.like(self.item), Signal(3), Signal(range(READ_LATENCY + 1))
         self._segment = {name: Signal(q.width, name=name) for name, q in HEAD.items()}
+        self._compared(m)
         m.d.comb += [self.place.eq(self._position), self._crc.data.eq(self._word)]
         with m.FSM():
             self._payload(m)
             self._words(m)
         return m
+
+    def _compared(self, m):
+        """In registers: right from the second cycle on after what is compared has changed."""
+        self._through, self._short, self._too_many = Signal(), Signal(), Signal()
+        self._extent, self._runs, self._stops = Signal(range(FARTHEST + 1)), Signal(), Signal()
+        address = self._segment["address"]
+        m.d.sync += [
+            self._through.eq(self._position == self.length),
+            self._short.eq(self._position + ITEM_BYTES > self.length),
+            self._too_many.eq(self._given > ITEMS_MOST),
+            self._extent.eq(ITEM_BYTES * self._segment["count"]),
+            self._runs.eq(address == _control(Control.RUN)),
+            self._stops.eq(address == _control(Control.STOP)),
+        ]
 
     def _finish(self, m, bad=0):
         m.d.comb += [self.done.eq(1), self.bad.eq(bad)]
@@ -89,18 +104,20 @@ class Walker(wiring.Component):
             m.d.sync += [self._position.eq(0), self._given.eq(0), self._dry.eq(self.look)]
             with m.If(self.look):
                 m.d.sync += self.refused.eq(0)
-                m.next = "segment"
+                m.next = "between"
                 with m.If(self.greets):
                     m.next = "greeting"
             with m.Elif(self.walk):
-                m.next = "segment"
+                m.next = "between"
         with m.State("greeting"):
             self._finish(m, self.length != ITEM_BYTES)
+        with m.State("between"):
+            m.next = "segment"
         with m.State("segment"):
             m.d.comb += self._crc.start.eq(1)
-            with m.If(self._position == self.length):
-                self._finish(m, self._given > ITEMS_MOST)
-            with m.Elif(self._position + ITEM_BYTES > self.length):
+            with m.If(self._through):
+                self._finish(m, self._too_many)
+            with m.Elif(self._short):
                 self._finish(m, 1)
             with m.Else():
                 self._gather(m, writes=0)
@@ -117,18 +134,20 @@ class Walker(wiring.Component):
             m.d.sync += [self._segment[name].eq(part) for name, part in unpack(HEAD, self._word).items()]
             m.next = "words"
             with m.If(self._dry):
-                m.next = "room"
+                m.next = "measure"
             with m.If(self.greets):
                 m.next = "give"
+        with m.State("measure"):
+            m.next = "room"
         with m.State("room"):
-            m.next = "segment"
+            m.next = "between"
             with m.Switch(kind):
                 with m.Case(Kind.READ):
                     m.d.sync += self._given.eq(self._given + count)
                 with m.Case(Kind.CHECK):
                     m.d.sync += self._given.eq(self._given + 1)
                 with m.Case(Kind.WRITE):
-                    m.d.sync += self._position.eq(self._position + ITEM_BYTES * count)
+                    m.d.sync += self._position.eq(self._position + self._extent)
                 with m.Default():
                     self._finish(m, 1)
 
@@ -139,7 +158,7 @@ class Walker(wiring.Component):
             self.port_address.eq(address),
             self.port_write_data.eq(self._word),
             self.item.eq(self._word),
-            self.steps.eq(Mux(address == _control(Control.RUN), self._word, 0)),
+            self.steps.eq(Mux(self._runs, self._word, 0)),
         ]
         with m.State("words"):
             with m.If(count != 0):
@@ -150,7 +169,7 @@ class Walker(wiring.Component):
                 m.d.sync += self._word.eq(self._crc.crc)
                 m.next = "give"
             with m.Else():
-                m.next = "segment"
+                m.next = "between"
         with m.State("access"):
             m.d.comb += self.port_request.eq(1)
             m.next = "accessed"
@@ -164,8 +183,7 @@ class Walker(wiring.Component):
                     m.next = "give"
                     with m.If(kind == Kind.CHECK):
                         m.next = "sum"
-                runs = (address == _control(Control.RUN)) | (address == _control(Control.STOP))
-                m.d.comb += self.noted.eq((kind == Kind.WRITE) & ~self.port_error & runs)
+                m.d.comb += self.noted.eq((kind == Kind.WRITE) & ~self.port_error & (self._runs | self._stops))
         with m.State("sum"):
             m.d.comb += self._crc.valid.eq(1)
             m.d.sync += [self._word.eq(self._word >> 8), self._number.eq(self._number + 1)]
@@ -174,7 +192,7 @@ class Walker(wiring.Component):
         with m.State("give"):
             m.d.comb += self.item_valid.eq(1)
             with m.If(self.item_ready):
-                m.next = "segment"
+                m.next = "between"
                 with m.If((kind == Kind.READ) & ~self.greets):
                     m.next = "words"
 
