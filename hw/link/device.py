@@ -67,7 +67,12 @@ class Device(wiring.Component):
         m.submodules.walker = self._walker = walker = Walker(self._state)
         m.submodules.pauser = self._pauser = pauser = Pause(self._state)
         m.submodules.registers = self._registers = registers = LinkRegisters(self._state)
-        self._greets = receiver.type == Operation.HELLO
+        self._greets, self._exchanges, self._accesses = Signal(), Signal(), Signal()
+        m.d.sync += [
+            self._greets.eq(receiver.type == Operation.HELLO),
+            self._exchanges.eq(receiver.type == Operation.EXCHANGE),
+            self._accesses.eq(receiver.type == Operation.ACCESS),
+        ]
         m.d.comb += [
             *(getattr(receiver, name).eq(getattr(self, name)) for name in ("valid", "data", "error", "broken")),
             self.out_valid.eq(sender.valid),
@@ -142,10 +147,11 @@ class Device(wiring.Component):
             m.d.comb += [self._emitter.begin.eq(1), self._emitter.at.eq(HEADER.size + ITEM_BYTES)]
             m.d.sync += self._status.eq(Status.DONE)
             with m.If(registers.halt):
-                m.d.comb += self._pauser.halt.eq(1)
-                m.next = "halting"
+                m.next = "halt"
             with m.Elif(receiver.frame):
-                m.next = "choice"
+                m.next = "comparison"
+        with m.State("comparison"):
+            m.next = "choice"
         with m.State("choice"):
             m.next = "idle"
             with m.If(due & free):
@@ -154,6 +160,9 @@ class Device(wiring.Component):
             with m.Elif(~due):
                 m.d.comb += [sender.send.eq(done), receiver.take.eq(1)]
                 m.d.comb += [registers.duplicates.eq(done), registers.gaps.eq(~done)]
+        with m.State("halt"):
+            m.d.comb += self._pauser.halt.eq(1)
+            m.next = "halting"
         with m.State("halting"):
             with m.If(self._pauser.done):
                 m.d.comb += registers.halted.eq(1)
@@ -161,12 +170,11 @@ class Device(wiring.Component):
 
     def _doing(self, m):
         receiver, walker, pauser = self._receiver, self._walker, self._pauser
-        exchanges = receiver.type == Operation.EXCHANGE
         with m.State("looking"):
             with m.If(walker.done):
                 with m.If(~self._greets & ~self._session):
                     self._ends(m, Status.STRANGER)
-                with m.Elif(~self._greets & ~exchanges & (receiver.type != Operation.ACCESS)):
+                with m.Elif(~self._greets & ~self._exchanges & ~self._accesses):
                     self._ends(m, Status.UNKNOWN)
                 with m.Elif(walker.bad):
                     self._ends(m, Status.MALFORMED)
@@ -174,9 +182,11 @@ class Device(wiring.Component):
                     m.next = "walk"
                     with m.If(self._greets):
                         m.d.sync += [self._session.eq(1), self._expected.eq(receiver.seq)]
-                    with m.If(exchanges & self.busy):
-                        m.d.comb += pauser.pause.eq(1)
-                        m.next = "pausing"
+                    with m.If(self._exchanges & self.busy):
+                        m.next = "pause"
+        with m.State("pause"):
+            m.d.comb += pauser.pause.eq(1)
+            m.next = "pausing"
         with m.State("pausing"):
             with m.If(pauser.done):
                 m.next = "walk"
@@ -190,9 +200,11 @@ class Device(wiring.Component):
                     m.next = "identity"
                 with m.If(walker.refused):
                     m.d.sync += self._status.eq(Status.REFUSED)
-                with m.If(exchanges):
-                    m.d.comb += pauser.resume.eq(1)
-                    m.next = "resuming"
+                with m.If(self._exchanges):
+                    m.next = "resume"
+        with m.State("resume"):
+            m.d.comb += pauser.resume.eq(1)
+            m.next = "resuming"
         with m.State("resuming"):
             with m.If(pauser.done):
                 m.next = "faults"

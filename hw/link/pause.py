@@ -37,29 +37,39 @@ class Pause(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         run, left = Signal.like(self.steps), Signal.like(self.steps)
-        rest = Signal(signed(len(run) + 1))
+        rest, some = Signal(signed(len(run) + 1)), Signal()
+        m.d.sync += some.eq(left != 0)
         with m.If(self.noted):
             m.d.sync += [run.eq(self.steps), left.eq(0)]
 
         def ask(register, following, write=None):
             """An access to a control register; the next state waits for its answer."""
-            m.d.comb += [self.port_request.eq(1), self.port_address.eq(join(Region.CONTROL, 0, register, 0))]
+            m.d.sync += [self.port_request.eq(1), self.port_address.eq(join(Region.CONTROL, 0, register, 0))]
+            m.d.sync += self.port_write.eq(write is not None)
             if write is not None:
-                m.d.comb += [self.port_write.eq(1), self.port_write_data.eq(write)]
+                m.d.sync += self.port_write_data.eq(write)
             m.next = following
+
+        m.d.sync += self.port_request.eq(0)
 
         with m.FSM():
             with m.State("idle"):
                 with m.If(self.pause):
-                    ask(Control.STOP, "stopping", write=1)
+                    m.next = "stop"
                 with m.Elif(self.halt):
-                    m.d.sync += left.eq(0)
-                    ask(Control.STOP, "asked", write=1)
-                with m.Elif(self.resume & (left != 0)):
-                    m.d.sync += [run.eq(left), left.eq(0)]
-                    ask(Control.RUN, "asked", write=left)
+                    m.next = "halt"
                 with m.Elif(self.resume):
                     m.next = "done"
+                    with m.If(some):
+                        m.next = "go"
+            with m.State("stop"):
+                ask(Control.STOP, "stopping", write=1)
+            with m.State("halt"):
+                m.d.sync += left.eq(0)
+                ask(Control.STOP, "asked", write=1)
+            with m.State("go"):
+                m.d.sync += [run.eq(left), left.eq(0)]
+                ask(Control.RUN, "asked", write=left)
             with m.State("stopping"):
                 with m.If(self.port_answer):
                     m.next = "stopped"

@@ -12,7 +12,7 @@ SLOTS = 4
 """Frames there is room for: one that comes, those that wait, one that is worked on."""
 
 BYTE_CYCLES = KEY_BYTES + 6
-"""Cycles from a byte to the next, at least: the key has to be gone through, and all is compared in cycles of its own."""
+"""Cycles from a byte to the next, at least: the key has to be gone through, and each comparison has its own cycle."""
 
 EVENTS = "good_frames", "line_errors", "breaks", "cobs_errors", "length_errors", "crc_errors", "overruns"
 """What may become of the bytes between two zeros; and a break, which is none."""
@@ -43,7 +43,7 @@ class FrameReceiver(wiring.Component):
     take : In(1)
         The frame has been worked on. Only while ``frame``; the next comes two cycles later.
     <event> : Out(1)
-        For one cycle, that after the byte or the break.
+        For one cycle, the second after the byte or the break.
     """
 
     def __init__(self, key: bytes):
@@ -67,9 +67,15 @@ class FrameReceiver(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        ends = Signal()
-        m.d.comb += ends.eq(self.valid & (self.data == 0) | self.broken)
-        decoded, byte, bad_cobs = self._decode(m, ends)
+        valid, data, error, broken, ends = Signal(), Signal(8), Signal(), Signal(), Signal()
+        m.d.sync += [
+            valid.eq(self.valid),
+            data.eq(self.data),
+            error.eq(self.error),
+            broken.eq(self.broken),
+            ends.eq(self.valid & (self.data == 0) | self.broken),
+        ]
+        decoded, byte, open_block = self._decode(m, valid, data, ends)
         count = Signal(range(MOST + 2))  # of decoded bytes; one more than there may be stands for all beyond
         with m.If(decoded & (count <= MOST)):
             m.d.sync += count.eq(count + 1)
@@ -78,24 +84,28 @@ class FrameReceiver(wiring.Component):
         crc_match = self._crc(m, decoded, byte, ends)
         room = self._store(m, decoded, byte, count, header)
 
-        some, bad_line, bad_length, bad_crc, lost = (
-            Signal(name=name) for name in ("some", "bad_line", "bad_length", "bad_crc", "lost")
+        some, bad_line, bad_cobs, bad_length, bad_crc, lost = (
+            Signal(name=name) for name in ("some", "bad_line", "bad_cobs", "bad_length", "bad_crc", "lost")
         )
-        m.d.sync += [bad_length.eq((count < LEAST) | (count != length + LEAST)), bad_crc.eq(~crc_match)]
+        m.d.sync += [
+            bad_cobs.eq(open_block),
+            bad_length.eq((count < LEAST) | (count != length + LEAST)),
+            bad_crc.eq(~crc_match),
+        ]
         with m.If(ends):
             m.d.sync += [count.eq(0), some.eq(0), bad_line.eq(0), lost.eq(0)]
         with m.Else():
             m.d.sync += lost.eq(lost | decoded & ~room)
-            with m.If(self.valid | self.error):
-                m.d.sync += [some.eq(1), bad_line.eq(bad_line | self.error)]
+            with m.If(valid | error):
+                m.d.sync += [some.eq(1), bad_line.eq(bad_line | error)]
         verdicts = (
-            ("line_errors", bad_line | self.broken),
+            ("line_errors", bad_line | broken),
             ("cobs_errors", bad_cobs),
             ("length_errors", bad_length),
             ("crc_errors", bad_crc),
             ("overruns", lost),
         )
-        m.d.sync += [*(getattr(self, event).eq(0) for event in EVENTS), self.breaks.eq(self.broken)]
+        m.d.sync += [*(getattr(self, event).eq(0) for event in EVENTS), self.breaks.eq(broken)]
         with m.If(ends & some):
             with m.If(verdicts[0][1]):
                 m.d.sync += self.line_errors.eq(1)
@@ -106,20 +116,20 @@ class FrameReceiver(wiring.Component):
                 m.d.sync += self.good_frames.eq(1)
         return m
 
-    def _decode(self, m, ends):
-        """(there is a byte behind COBS, it, what came so far doesn't end like COBS) a cycle after the line's byte."""
+    def _decode(self, m, valid, data, ends):
+        """(there is a byte behind COBS, it, more bytes of its block have to come) a cycle after the line's byte."""
         # Bytes that the block still has, whether no zero is behind it, whether there is one
         left, full, begun = Signal(8), Signal(), Signal()
         decoded, byte = Signal(), Signal(8)
         m.d.sync += decoded.eq(0)
         with m.If(ends):
             m.d.sync += [left.eq(0), begun.eq(0)]
-        with m.Elif(self.valid):
+        with m.Elif(valid):
             with m.If(left == 0):
-                m.d.sync += [left.eq(self.data - 1), full.eq(self.data == 0xFF), begun.eq(1)]
+                m.d.sync += [left.eq(data - 1), full.eq(data == 0xFF), begun.eq(1)]
                 m.d.sync += [decoded.eq(begun & ~full), byte.eq(0)]
             with m.Else():
-                m.d.sync += [left.eq(left - 1), decoded.eq(1), byte.eq(self.data)]
+                m.d.sync += [left.eq(left - 1), decoded.eq(1), byte.eq(data)]
         return decoded, byte, left != 0
 
     def _header(self, m, decoded, byte, count):

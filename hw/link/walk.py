@@ -85,7 +85,7 @@ class Walker(wiring.Component):
             self._through.eq(self._position == self.length),
             self._short.eq(self._position + ITEM_BYTES > self.length),
             self._too_many.eq(self._given > ITEMS_MOST),
-            self._extent.eq(ITEM_BYTES * self._segment["count"]),
+            self._extent.eq(sum(self._segment["count"] << n for n in range(3) if ITEM_BYTES >> n & 1)),  # no multiplier
             self._runs.eq(address == _control(Control.RUN)),
             self._stops.eq(address == _control(Control.STOP)),
         ]
