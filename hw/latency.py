@@ -10,6 +10,7 @@ from .host import HANDOVER
 from .host import LATENCY as HOST_LATENCY
 from .lane import COPIED, FETCHED, NEXT, written
 from .lane import latency as sums_latency
+from .link.bound import LONGEST, ONE_WORD
 from .list import LATENCY as LISTED
 from .parameters import Parameters
 
@@ -43,4 +44,6 @@ def latencies(p: Parameters) -> list[tuple[str, str, int]]:
         ("node", "issue to its new state in the lanes' memories", node.latency + COPIED),
         ("stage", "an edge to the next edge of the same node, at least", loop.edge + loop.node),
         ("host port", "request to answer", HOST_LATENCY),
+        ("link", "end of a command that reads a word to its answer, at most", ONE_WORD),
+        ("link", "end of any command to its answer, at most; an exchange waits for the end of a step besides", LONGEST),
     ]

@@ -11,8 +11,10 @@ from served import SMALL, NoisyLine, serial_circuit, served
 from golden import scene as scenes
 from golden.errors import InputError
 from hw.description import key
+from hw.link import bound
 from hw.link.frame import Frame
 from hw.link.protocol import Operation
+from hw.link.send import LOOK
 from hw.registers import Control, Map, Region
 from sim.image import load
 from sim.link.board import Board
@@ -97,8 +99,9 @@ def test_an_exchange_takes_the_bytes_it_says(loaded):
     circuit.close()
     there, back = line_bytes(2)
     assert lengths[0] == there and len(Frame(1, 1, payload=answer.payload).packed(b"")) == back
-    bytes_cycles = 80 * (there + back)
-    assert bytes_cycles < cycles + 200 < bytes_cycles + 4000  # the machine was not running
+    on_the_line = 10 * circuit.linked.identity.bit_cycles * (there + back)
+    between = bound.cycles(bound.Work(segments=6, read=12, written=6)) + bound.PAUSED + LOOK * back
+    assert on_the_line < cycles + line.SLICE < on_the_line + between + 2 * line.SLICE  # the machine was not running
 
 
 def test_more_nodes_than_fit_are_refused(loaded):

@@ -6,11 +6,12 @@ import socket
 from collections.abc import Callable
 
 from golden.errors import InputError
+from hw.link.bound import LONGEST
 
 HOST = "127.0.0.1"
 SLICE = 2000
 """Cycles between two looks at the socket."""
-QUIET = 1_000_000
+QUIET = 2 * LONGEST
 """Cycles without anything on the line or going on after which time stands still until the host speaks: more than any
 command takes."""
 
