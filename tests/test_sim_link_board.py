@@ -45,7 +45,7 @@ def test_a_scene_on_a_board_has_the_bits_of_the_simulated_circuit(service, tmp_p
 def test_a_board_is_used_again_and_again_as_it_was_left(service, rng):
     for _ in range(3):
         image = random_image(rng, nodes=20, edges=40, materials=2, tables=1)
-        model, board = NativeMachine(image), Board(service.url)
+        model, board = NativeMachine(image), Board.at(service.url)
         machine = CircuitMachine(image, board, verify=board.verify)
         for steps in (1, 20):
             model.step(steps)
@@ -57,7 +57,7 @@ def test_a_board_is_used_again_and_again_as_it_was_left(service, rng):
 
 
 def test_memories_that_differ_are_noticed(service, rng):
-    image, board = random_image(rng, nodes=20, edges=40, materials=2, tables=1), Board(service.url)
+    image, board = random_image(rng, nodes=20, edges=40, materials=2, tables=1), Board.at(service.url)
     writes = []
 
     def verify(pairs):
@@ -73,19 +73,19 @@ def test_memories_that_differ_are_noticed(service, rng):
 
 
 def test_what_the_circuit_refuses_is_told(service):
-    board = Board(service.url)
+    board = Board.at(service.url)
     with pytest.raises(CommandRefused, match="the circuit must do what it is told, but says: refused"):
         board.write([(control(Control.MAGIC), 1)])
     board.close()
 
 
 def test_a_run_that_an_earlier_host_began_is_ended(service, rng):
-    image, first = random_image(rng, nodes=20, edges=40, materials=2, tables=1), Board(service.url)
+    image, first = random_image(rng, nodes=20, edges=40, materials=2, tables=1), Board.at(service.url)
     CircuitMachine(image, first)
     first.write([(control(Control.RUN), 1 << 31)])
     assert first.run()
     first.close()
-    second = Board(service.url)
+    second = Board.at(service.url)
     assert not second.run()
     second.close()
 
@@ -93,7 +93,7 @@ def test_a_run_that_an_earlier_host_began_is_ended(service, rng):
 def test_a_reset_in_between_is_noticed(rng):
     circuit = serial_circuit()
     service = Service(circuit)
-    board = Board(service.url, timeout=1)
+    board = Board.at(service.url, timeout=1)
     circuit.reset()
     with pytest.raises(LinkError, match="the circuit must stay as it is while it is used, but it was reset"):
         board.read([control(Control.MAGIC)])
@@ -103,7 +103,7 @@ def test_a_reset_in_between_is_noticed(rng):
 
 
 def test_a_watchdog_is_set_in_seconds(service):
-    board = Board(service.url)
+    board = Board.at(service.url)
     board.watch(0.5)
     assert int(board.read([join(LINK, 0, Link.WATCHDOG, 0)])[0]) == 12_000_000
     board.close()
@@ -162,18 +162,18 @@ def test_a_circuit_with_another_map_is_refused(service, monkeypatch):
                f"{service.url} has {key(SMALL).hex()}: build it anew (make bitstream), or use the version that it was "
                "built from")
     with pytest.raises(OtherCircuit, match=re.escape(message)):
-        Board(service.url)
+        Board.at(service.url)
 
 
 def test_something_else_than_a_circuit_is_refused(service, monkeypatch):
     monkeypatch.setattr(driver, "MAGIC", 5)
     message = "--port must lead to a circuit of this version, not what is at .*: magic must be 0x5, not 0x5248454f"
     with pytest.raises(OtherCircuit, match=message):
-        Board(service.url)
+        Board.at(service.url)
 
 
 def test_a_line_that_is_gone_is_one_error(service):
-    board = Board(service.url)
+    board = Board.at(service.url)
     service.stop()
     with pytest.raises(LineBroken, match=f"--port must stay connected, but {service.url} is gone: "):
         for _ in range(100):

@@ -48,7 +48,7 @@ def test_what_is_seen_is_of_one_step_and_a_velocity_is_taken_up(loaded):
     nodes, model = driven(loaded), NativeMachine(loaded.image)
     rank = ranks(loaded.node_order)[nodes]
     with served() as service:
-        board = Board(service.url)
+        board = Board.at(service.url)
         live = Live(board, loaded, nodes)
         CircuitMachine(loaded.image, board)
         board.write([(Map(SMALL).address(Region.CONTROL, 0, Control.RUN), 100_000)])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterable, Iterator
-from time import sleep
+from collections.abc import Callable, Iterable, Iterator
+from time import monotonic, sleep
 
 import numpy as np
 
@@ -30,11 +30,12 @@ class Board:
 
     Parameters
     ----------
-    url : str
-        Any that pyserial opens: ``/dev/ttyUSB0``, ``socket://127.0.0.1:5000``.
-    baud : int
+    line
+        With ``url``, ``write(bytes)``, ``read(seconds)`` and ``close()``: `sim.link.line.SerialLine`; see `at`.
     timeout : float
         s; see `sim.link.session.Session`.
+    clock : callable
+        s; a simulated line has a time of its own.
 
     Attributes
     ----------
@@ -50,16 +51,21 @@ class Board:
         See `sim.link.errors`; the first two by every other method as well.
     """
 
-    def __init__(self, url: str, baud: int = BAUD, timeout: float = TIMEOUT):
-        self._line = SerialLine(url, baud)
+    def __init__(self, line, timeout: float = TIMEOUT, clock: Callable[[], float] = monotonic):
+        self._line = line
         try:
-            self.session = Session(self._line, lambda identity: _key(url, identity), timeout)
+            self.session = Session(line, lambda identity: _key(line.url, identity), timeout, clock=clock)
             self.parameters = self.session.identity.parameters()
             self.faults = faults(*datapaths(self.parameters))
             self.halt()
         except BaseException:
             self._line.close()
             raise
+
+    @classmethod
+    def at(cls, url: str, baud: int = BAUD, timeout: float = TIMEOUT) -> Board:
+        """The circuit at a port: any that pyserial opens, ``/dev/ttyUSB0``, ``socket://127.0.0.1:5000``."""
+        return cls(SerialLine(url, baud), timeout)
 
     def close(self):
         self._line.close()

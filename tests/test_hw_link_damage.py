@@ -1,0 +1,132 @@
+"""Damaged frames in front of the circuit: nothing of any is applied, each is counted as what it is, and the next good
+frame is accepted. The host's decoder (cobs, zlib) says which still are frames."""
+
+import random
+from collections import Counter
+
+import pytest
+from link_objects import KEY
+from linked import Line
+from test_hw_link_device import X, access, hello, read, write
+
+from hw.link.bound import Work, cycles
+from hw.link.frame import LEAST, FrameError, unpacked
+from hw.link.protocol import ITEM_BYTES, Status, items
+from hw.link.receive import EVENTS
+from hw.link.registers import LINK, Link
+from hw.link.send import LOOK
+from hw.registers import join
+
+MILLION = 1_000_000
+NEXT_GOOD = 8
+"""Damaged frames in front of a good one, at the most."""
+COUNTERS = [Link[event.upper()] for event in EVENTS]
+WORDS = 3
+"""That are looked at, and that the damaged frames would have written."""
+COUNTED_EVERY = 20
+"""Good frames: so often the counters are read as well."""
+
+
+def flips(r, frame, _):
+    changed = bytearray(frame)
+    for _ in range(r.randint(1, 4)):
+        changed[r.randrange(len(frame))] ^= 1 << r.randrange(8)
+    return changed
+
+
+def drops(r, frame, _):
+    return bytes(byte for n, byte in enumerate(frame) if n not in {r.randrange(len(frame)) for _ in range(2)})
+
+
+def inserts(r, frame, _):
+    at = r.randrange(len(frame) + 1)
+    return frame[:at] + r.randbytes(r.randint(1, 3)) + frame[at:]
+
+
+def bursts(r, frame, _):
+    at = r.randrange(len(frame))
+    length = r.randint(2, 8)
+    return frame[:at] + r.randbytes(len(frame[at : at + length])) + frame[at + length :]
+
+
+def truncations(r, frame, _):
+    return frame[: r.randrange(len(frame))] if r.random() < 0.5 else frame[r.randrange(1, len(frame)) :]
+
+
+def splices(r, frame, other):
+    return frame[: r.randrange(1, len(frame))] + other[r.randrange(1, len(other)) :]
+
+
+def noise(r, frame, _):
+    return r.randbytes(r.randint(1, 2 * len(frame)))
+
+
+KINDS = flips, drops, inserts, bursts, truncations, splices, noise
+
+
+def damaged(r, seq):
+    """(a command that would write, made into something that is no frame, and a zero; what has to be counted)"""
+    frame, other = (access(seq, *(write(X + n, r.getrandbits(36) | 1) for n in range(r.randint(1, WORDS)))).packed(KEY)
+                    for _ in range(2))
+    while True:
+        bad = bytes(r.choice(KINDS)(r, frame, other)) + b"\0"
+        counted = [told(part) for part in bad.split(b"\0") if part]
+        if "good_frames" not in counted:  # a zero that went or came, or a splice of two halves that fit
+            return bad, counted
+
+
+def answered(words: int) -> int:
+    """Cycles in which an answer is out: each byte is looked for, and sent, and some are of COBS."""
+    work = Work(segments=2, read=words)
+    return cycles(work) + 3 * LOOK * (LEAST + ITEM_BYTES * work.items)
+
+
+def told(coded: bytes) -> str:
+    """What the circuit has to count, for what stands between two zeros."""
+    try:
+        unpacked(coded, KEY)
+    except FrameError as error:
+        return error.kind
+    return "good_frames"
+
+
+def campaign(seed: int, frames: int) -> Counter:
+    """What so many damaged frames were counted as; raises AssertionError if any of it isn't as it should be."""
+    r, line, expected = random.Random(seed), Line(), Counter({"good_frames": 1})
+    words, counters = read(X, WORDS), read(join(LINK, 0, COUNTERS[0], 0), len(COUNTERS))
+    line.exchange(hello(0))
+    number = 0
+    while number < frames:
+        seq = expected["good_frames"] % 256
+        counts = expected["good_frames"] % COUNTED_EVERY == 0
+        sent = b""
+        for _ in range(min(r.randint(1, NEXT_GOOD), frames - number)):
+            bad, kinds = damaged(r, seq)
+            sent += bad
+            expected.update(kinds)
+            number += 1
+        good = access(seq, words, *[counters] * counts)
+        expected["good_frames"] += 1
+        came = line.send(sent + good.packed(KEY), answered(WORDS + len(COUNTERS) * counts))
+        answer = unpacked(came.strip(b"\0"), KEY)
+        assert (answer.seq, answer.status) == (seq, Status.DONE), f"after {number} frames: {answer}"
+        _, *x = items(answer.payload)
+        about = f"after {number} frames, of which the last were {sent.hex()}"
+        assert not any(x[:WORDS]), f"{about}, words are {x[:WORDS]}"
+        counted = dict(zip(EVENTS, x[WORDS:], strict=counts))
+        assert not counts or Counter(counted) == expected, f"{about}: {counted}"
+    line.close()
+    return expected
+
+
+def test_nothing_of_a_damaged_frame_is_applied_and_the_next_good_one_is(seed):
+    seen = campaign(seed, 3000)
+    print(dict(seen))
+    assert min(seen[kind] for kind in ("cobs_errors", "length_errors", "crc_errors")) > 50
+
+
+@pytest.mark.campaign
+def test_nothing_of_a_million_damaged_frames_is_applied(seed, figure):
+    seen = campaign(seed + 1, MILLION)
+    print(dict(seen))
+    figure(f"damaged frames applied, of {MILLION:,}, each group followed by a good one that is", 0, 0)
