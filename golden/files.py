@@ -12,10 +12,16 @@ _numbers = itertools.count()
 @contextmanager
 def replaced(path: Path):
     """An open binary file that takes the place of ``path`` at the end, unless an exception ends it."""
+    with replacing(path) as partial, open(partial, "wb") as file:
+        yield file
+
+
+@contextmanager
+def replacing(path: Path):
+    """The path of a file to write, which takes the place of ``path`` at the end, unless an exception ends it."""
     partial = path.with_name(f".{path.name}.{os.getpid()}.{next(_numbers)}")
     try:
-        with open(partial, "wb") as file:
-            yield file
+        yield partial
         os.replace(partial, path)
     finally:
         partial.unlink(missing_ok=True)

@@ -1,17 +1,18 @@
-"""Meshes of triangles (2-D) or tetrahedra (3-D): checked, with every edge once, from grids and files."""
+"""Meshes of triangles (2-D) or tetrahedra (3-D): checked, with every edge once, from grids, files and Delaunay."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from math import factorial, isfinite
+from math import isfinite
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from golden import grids, meshfile
+from golden import bodies, grids, meshfile
 from golden.errors import InputError
+from golden.quality import radius_ratio, signed_measure
 
 FLAT = 1e-12  # a cell smaller than this part of its longest edge to the power of dim has no area or volume
 
@@ -22,7 +23,7 @@ class Mesh:
 
     Every edge is there once, with i < j, in ascending order; nodes keep the order they were given in. Raises
     `InputError` when a point or an edge cannot belong to an object. Build one with `from_cells`, `rectangle`,
-    `box` or `read`.
+    `box`, `filled` or `read`.
     """
 
     points: np.ndarray
@@ -55,7 +56,15 @@ class Mesh:
 
     def measure(self) -> np.ndarray:
         """(M,) area (m^2) or volume (m^3) of each cell."""
-        return np.abs(_signed_measure(self.points[self.cells]))
+        return np.abs(signed_measure(self.points[self.cells]))
+
+    def quality(self) -> np.ndarray:
+        """(M,) radius ratio of each cell, 1 for equal sides to 0 for a flat one: `golden.quality`."""
+        return np.abs(radius_ratio(self.points[self.cells]))
+
+    def lengths(self) -> np.ndarray:
+        """(E,) m: how long each edge is."""
+        return np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1)
 
     def lumped_mass(self, density) -> np.ndarray:
         """(N,) kg: each cell's mass shared by its nodes; `density`, one or (M,), in kg/m^2 or kg/m^3."""
@@ -73,8 +82,8 @@ class Mesh:
 def from_cells(points, cells) -> Mesh:
     """Mesh of the given triangles or tetrahedra; those of negative orientation are reordered.
 
-    Raises `InputError` for a node index out of range, a cell given twice or without area or volume, and as
-    `Mesh` does.
+    Raises `InputError` for a node index out of range, a cell given twice or without area or volume, more than two
+    cells at a side, and as `Mesh` does.
     """
     points, cells = np.array(points, dtype=float), np.array(cells, dtype=np.int64)
     _check_points(points)
@@ -85,13 +94,15 @@ def from_cells(points, cells) -> Mesh:
     pairs = list(combinations(range(cells.shape[1]), 2))
     corners = points[cells]
     longest = np.max([np.linalg.norm(corners[:, b] - corners[:, a], axis=1) for a, b in pairs], axis=0)
-    signed = _signed_measure(corners)
+    signed = signed_measure(corners)
     for cell in np.flatnonzero(np.abs(signed) <= FLAT * longest ** points.shape[1]):
         measure = "an area" if points.shape[1] == 2 else "a volume"
         raise InputError(f"cells must all have {measure}, unlike cell {cell} (points {cells[cell].tolist()})")
     cells[signed < 0, -2:] = cells[signed < 0, :-3:-1]
     edges = np.sort(np.concatenate([cells[:, pair] for pair in pairs]), axis=1)
-    return Mesh(points, cells, np.unique(edges, axis=0))
+    mesh = Mesh(points, cells, np.unique(edges, axis=0))
+    _check_sides(cells)  # last: points that are twice there have a message of their own
+    return mesh
 
 
 def rectangle(nodes, size) -> Mesh:
@@ -113,6 +124,11 @@ def box(nodes, size, tetrahedra: int = 5) -> Mesh:
     return from_cells(*grids.box(nodes, size, tetrahedra))
 
 
+def filled(kind: str, **parameters) -> Mesh:
+    """Irregular mesh of a body, one of `golden.bodies.KINDS` with its parameters; raises `InputError` as it does."""
+    return from_cells(*bodies.KINDS[kind](**parameters))
+
+
 def read(path, scale: float = 1.0) -> Mesh:
     """Mesh of the triangles or the tetrahedra in a file that meshio reads; `scale` makes its unit metres.
 
@@ -126,10 +142,14 @@ def read(path, scale: float = 1.0) -> Mesh:
     return from_cells(points * scale, cells)
 
 
-def _signed_measure(corners: np.ndarray) -> np.ndarray:
-    """(M,) area or volume of cells whose corners are (M, dim + 1, dim), negative where the orientation is."""
-    sides = corners[:, 1:] - corners[:, :1]
-    return np.linalg.det(sides) / factorial(sides.shape[1])
+def _check_sides(cells: np.ndarray) -> None:
+    """A side is between two cells or outside: more of them overlap, and their mass would count twice."""
+    sides = np.sort(np.concatenate([np.delete(cells, n, axis=1) for n in range(cells.shape[1])]), axis=1)
+    found, count = np.unique(sides, axis=0, return_counts=True)
+    if (many := np.flatnonzero(count > 2)).size:
+        kind = "an edge" if cells.shape[1] == 3 else "a face"
+        raise InputError(f"cells must meet two at {kind}, but {count[many[0]]} have the points "
+                         f"{found[many[0]].tolist()}: remove those that overlap")
 
 
 def _check_points(points: np.ndarray) -> None:

@@ -1,4 +1,4 @@
-"""Points and cells from mesh files. The only place that knows meshio."""
+"""Points and cells from mesh files and to them. The only place that knows meshio."""
 
 from __future__ import annotations
 
@@ -9,7 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from golden.errors import InputError
+from golden.files import replacing
 
+FORMATS = {".vtu": "vtu", ".vtk": "vtk", ".msh": "gmsh"}
+"""By suffix, those that are written: they hold triangles and tetrahedra with all digits."""
+CELLS = {2: "line", 3: "triangle", 4: "tetra"}
+"""What meshio calls cells, by their number of corners."""
 FIRST_ORDER = "mesh the whole object with first-order triangles or with first-order tetrahedra"
 
 
@@ -36,6 +41,22 @@ def read(path) -> tuple[np.ndarray, np.ndarray]:
     return points, np.concatenate(cells[kind])
 
 
+def write(path, points: np.ndarray, cells: list[np.ndarray], point_data=None, cell_data=None) -> None:
+    """Write points (N, 2 or 3) and arrays of cells, each (M, corners), as a whole file of a suffix in `FORMATS`.
+
+    ``point_data`` holds (N, ...) arrays by name, ``cell_data`` a list of (M, ...) ones, one for each array of cells.
+    Points in a plane get z = 0.
+    """
+    import meshio  # as in `_read`
+
+    path = Path(path)
+    inside = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
+    blocks = [(CELLS[block.shape[1]], block) for block in cells]
+    mesh = meshio.Mesh(inside, blocks, point_data=point_data, cell_data=cell_data)
+    with replacing(path) as partial:
+        meshio.write(partial, mesh, file_format=FORMATS[path.suffix])
+
+
 def _read(path: Path) -> tuple[np.ndarray, dict[str, list[np.ndarray]]]:
     """Points and, for each type of cell in the file, its blocks."""
     import meshio  # here, because only scenes with a mesh file need it and it loads slowly
@@ -44,7 +65,8 @@ def _read(path: Path) -> tuple[np.ndarray, dict[str, list[np.ndarray]]]:
         raise InputError(f"file must be an existing mesh file, not {path}")
     complaints = io.StringIO()
     try:
-        with contextlib.redirect_stdout(complaints), contextlib.redirect_stderr(complaints):
+        with (contextlib.redirect_stdout(complaints), contextlib.redirect_stderr(complaints),
+              np.errstate(all="ignore")):
             found = meshio.read(path)
     except (Exception, SystemExit) as error:  # meshio exits, or raises whatever a broken file trips over
         raise InputError(f"file must be a mesh that meshio can read, not {path}") from error

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from golden import mesh as meshes
-from golden import schema, stability
+from golden import kinds, schema, stability
 from golden.assignment import assign
 from golden.errors import InputError
 from golden.mesh import Mesh
@@ -36,7 +35,10 @@ def _document(path: Path) -> dict[str, Any]:
 
 
 def _scene(file: schema.SceneFile, path: Path) -> Scene:
-    mesh = _mesh(file.mesh, path.parent)
+    try:
+        mesh = kinds.make(file.mesh, path.parent)
+    except InputError as error:
+        raise error.under("mesh") from None
     materials, edge_material = assign(file.materials, mesh)
     if not file.phases:
         raise InputError("phases must hold at least one phase, not none")
@@ -56,19 +58,6 @@ def _scene(file: schema.SceneFile, path: Path) -> Scene:
     )
     stability.check(scene)
     return scene
-
-
-def _mesh(table, folder: Path) -> Mesh:
-    try:
-        match table:
-            case schema.Rectangle():
-                return meshes.rectangle(table.nodes, table.size)
-            case schema.Box():
-                return meshes.box(table.nodes, table.size, table.tetrahedra)
-            case schema.File():
-                return meshes.read(folder / table.file, table.scale)
-    except InputError as error:
-        raise error.under("mesh") from None
 
 
 def _mass(table: schema.Mass, mesh: Mesh) -> np.ndarray:

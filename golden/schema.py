@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 import msgspec
 from msgspec import Meta, Struct, inspect
@@ -13,6 +13,7 @@ from golden.regions import Region
 
 Positive = Annotated[float, Meta(gt=0)]
 Count = Annotated[int, Meta(ge=1)]
+Seed = Annotated[int, Meta(ge=0)]
 
 
 class Rectangle(Struct, tag_field="kind", tag="rectangle", forbid_unknown_fields=True):
@@ -29,6 +30,48 @@ class Box(Struct, tag_field="kind", tag="box", forbid_unknown_fields=True):
 class File(Struct, tag_field="kind", tag="file", forbid_unknown_fields=True):
     file: str  # relative to the scene file
     scale: float = 1.0  # m per unit of the file
+
+
+class Disc(Struct, tag_field="kind", tag="disc", forbid_unknown_fields=True):
+    radius: Positive  # m
+    edge: Positive  # m: about how long edges are
+    seed: Seed = 0  # another one gives another mesh
+
+
+class Ring(Struct, tag_field="kind", tag="ring", forbid_unknown_fields=True):
+    outer: Positive  # m: its radii
+    inner: Positive
+    edge: Positive
+    seed: Seed = 0
+
+
+class Cylinder(Struct, tag_field="kind", tag="cylinder", forbid_unknown_fields=True):
+    radius: Positive  # m
+    height: Positive  # m
+    edge: Positive
+    seed: Seed = 0
+
+
+class Ball(Struct, tag_field="kind", tag="ball", forbid_unknown_fields=True):
+    radius: Positive  # m
+    edge: Positive
+    seed: Seed = 0
+
+
+class Beam(Struct, tag_field="kind", tag="beam", forbid_unknown_fields=True):
+    size: list[float]  # m, of two axes or of three
+    edge: Positive
+    seed: Seed = 0
+
+
+class Irregular(Struct, tag_field="kind", tag="irregular", forbid_unknown_fields=True):
+    radius: Positive  # m
+    edge: Positive
+    seed: Seed = 0
+
+
+Mesh = Rectangle | Box | File | Disc | Ring | Cylinder | Ball | Beam | Irregular
+KINDS = {kind.__struct_config__.tag: kind for kind in get_args(Mesh)}
 
 
 class Mass(Struct, forbid_unknown_fields=True):
@@ -59,7 +102,7 @@ class Frames(Struct, forbid_unknown_fields=True):
 
 class SceneFile(Struct, forbid_unknown_fields=True):
     dt: Positive  # s
-    mesh: Rectangle | Box | File
+    mesh: Mesh
     materials: dict[str, Any]  # their keys depend on the preset: golden/assignment.py
     mass: Mass
     phases: list[Phase]
@@ -119,7 +162,7 @@ def _explain(message: str, document: Any, kind: type, path: str) -> str:
     if found := re.match(r"Expected `(\w+)(?: \| null)?`(?: (>=?) (\S+))?", what):
         bound = f" {BOUNDS[found[2]]} {float(found[3]):g}" if found[2] else ""
         return f"{path} must be {WORDS[found[1]]}{bound}, not {shown(value)}"
-    return f"{path} must be rectangle, box or file, not {shown(value)}"  # the one table with variants
+    return f"{path} must be one of {', '.join(KINDS)}, not {shown(value)}"  # the one table with variants
 
 
 def _entry(node: Any, key: str, value: Any) -> Any:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from golden import records
+from golden.capacity import most_at_a_node
 from golden.errors import InputError
 from golden.image import Image
 from hw.parameters import Parameters
@@ -35,8 +36,7 @@ class Program:
         ):
             if used > room:
                 raise InputError(f"{name} of the object must be at most {room} for this circuit, not {used}")
-        fmt, busiest = image.formats, np.bincount(image.edges.ravel()).max()
-        most = fmt.accumulator.raw_max // -fmt.force.raw_min
+        busiest, most = np.bincount(image.edges.ravel()).max(), most_at_a_node(image.formats)
         if busiest > most:
             raise InputError(f"edges at one node must be at most {most}, so that no sum overflows, not {busiest}")
         if image.formats != parameters.formats:

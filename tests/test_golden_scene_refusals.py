@@ -40,7 +40,8 @@ REFUSED = [
      "gravity must have 2 components, as the mesh does, not 3"),
     # mesh
     (MESH, "mesh = 3", "mesh must be a table, not 3"),
-    ('kind = "rectangle"', 'kind = "disc"', "mesh.kind must be rectangle, box or file, not 'disc'"),
+    ('kind = "rectangle"', 'kind = "cone"',
+     "mesh.kind must be one of rectangle, box, file, disc, ring, cylinder, ball, beam, irregular, not 'cone'"),
     ('kind = "rectangle"', "kind = 1", "mesh.kind must be text, not 1"),
     ('kind = "rectangle", ', "", "mesh.kind must be given"),
     ("nodes = [3, 3],", "", "mesh.nodes must be given"),
