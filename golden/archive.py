@@ -27,22 +27,34 @@ def save(scene: Scene, path) -> None:
             name=scene.name, description=scene.description, dt=scene.dt,
             phases=[phase.name for phase in scene.phases],
             materials=[material.name for material in scene.materials],
-            parameters=[astuple(material)[1:] for material in scene.materials],  # in the order of `Material`
+            parameters=_numbers(scene.materials),
+            switched=[bool(phase.materials) for phase in scene.phases],
+            phase_parameters=[_numbers(phase.materials or scene.materials) for phase in scene.phases],
         )
+
+
+def _numbers(materials: tuple[Material, ...]) -> list[tuple]:
+    """What is behind their names, in the order of `Material`."""
+    return [astuple(material)[1:] for material in materials]
 
 
 def load(path) -> Scene:
     """The scene in a file that `save` wrote, equal to it but for its path, which is this file."""
     with np.load(path) as archive:
         kept = {name: archive[name] for name in archive}
-    materials = zip(kept["materials"].tolist(), kept["parameters"].tolist(), strict=True)
-    phases = zip(kept["phases"].tolist(), *(kept[name] for name in PHASE), strict=True)
+    def materials(numbers):
+        pairs = zip(kept["materials"].tolist(), numbers.tolist(), strict=True)
+        return tuple(Material(name, *parameters) for name, parameters in pairs)
+
+    brought = [materials(numbers) if switched else None
+               for switched, numbers in zip(kept["switched"], kept["phase_parameters"], strict=True)]
+    phases = zip(kept["phases"].tolist(), *(kept[name] for name in PHASE), brought, strict=True)
     return Scene(
         name=str(kept["name"]),
         description=str(kept["description"]),
         path=Path(path),
         mesh=Mesh(*(kept[name] for name in MESH)),
-        materials=tuple(Material(name, *parameters) for name, parameters in materials),
+        materials=materials(kept["parameters"]),
         dt=float(kept["dt"]),
         phases=tuple(Phase(name, int(steps), *arrays) for name, steps, *arrays in phases),
         **{name: kept[name] for name in OBJECT},

@@ -39,6 +39,21 @@ def assign(tables: dict[str, Any], mesh: Mesh) -> tuple[tuple[Material, ...], np
     return tuple(materials), _per_edge(owner, mesh)
 
 
+def changed(tables: dict[str, Any], materials: tuple[Material, ...], path: str) -> tuple[Material, ...]:
+    """The materials with those that the tables of a phase, found at ``path``, have in their places.
+
+    Raises `InputError` for one that the object doesn't have, and for a wrong parameter.
+    """
+    names = [material.name for material in materials]
+    for name, table in tables.items():
+        if name not in names:
+            raise schema.unknown_key(f"{path}.{name}", names)
+        if "region" in table:
+            raise InputError(f"{path}.{name}.region must not be there: a material is another one where it is")
+        materials = tuple(_material(name, table, f"{path}.{name}") if m.name == name else m for m in materials)
+    return materials
+
+
 def _material(name: str, table: Any, path: str) -> Material:
     if not isinstance(table, dict):
         raise InputError(f"{path} must be a table, not {schema.shown(table)}")

@@ -46,6 +46,12 @@ class Machine:
         self.v = v
         self.refresh()
 
+    def take(self, image: Image):
+        """Go on with an image that differs in materials, natural lengths and ratios."""
+        self.image, self.ratio = image, image.ratio.copy()
+        self._tables = Tables(self._fmt, image.inverse, image.damper)
+        self.refresh()
+
     def refresh(self):
         """Take up changes of the image's materials, loads, masses and edges."""
         image, fmt = self.image, self._fmt

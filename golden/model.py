@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from golden.errors import InputError
-from golden.materials import solve_damper
+from golden.materials import Material, solve_damper
 from golden.problem import Phase, Scene
+from golden.switch import switched
 from golden.trajectory import Trajectory
 
 REPORT_EVERY = 200  # steps between two calls of `progress`
@@ -21,16 +23,8 @@ class Model:
     """
 
     def __init__(self, scene: Scene):
-        self.scene = scene
         self.i, self.j = scene.mesh.edges.T
-        self.k, self.c1 = scene.per_edge("k"), scene.per_edge("c1")
-        self.a_min, self.a_max = scene.per_edge("a_min"), scene.per_edge("a_max")
-
-        damper = [scene.per_edge(name) for name in ("c1", "c_max", "c_min", "f1", "f2")]
-        self.sigma, self.rho = solve_damper(*damper, g=0)
-        self.varying = np.flatnonzero(damper[1] != damper[2])  # edges whose damper depends on the force
-        self.damper = [parameter[self.varying] for parameter in damper]
-
+        self._consist(scene)
         ends = np.concatenate([self.j, self.i])[:, None]
         self.component = (ends * scene.dim + np.arange(scene.dim)).ravel()  # where +f u, then -f u, are added
 
@@ -39,8 +33,32 @@ class Model:
         self.L = self.a * norm(self.x[self.j] - self.x[self.i])
         self.begin(scene.phases[0])
 
+    def _consist(self, scene: Scene) -> None:
+        """Take the materials of the scene."""
+        self.scene = scene
+        self.k, self.c1 = scene.per_edge("k"), scene.per_edge("c1")
+        self.a_min, self.a_max = scene.per_edge("a_min"), scene.per_edge("a_max")
+        damper = [scene.per_edge(name) for name in ("c1", "c_max", "c_min", "f1", "f2")]
+        self.sigma, self.rho = solve_damper(*damper, g=0)
+        self.varying = np.flatnonzero(damper[1] != damper[2])  # edges whose damper depends on the force
+        self.damper = [parameter[self.varying] for parameter in damper]
+
+    def become(self, materials: tuple[Material, ...]) -> None:
+        """Consist of other materials from here on, one for each there was, without a jump in force: `golden.switch`."""
+        d = self.x[self.j] - self.x[self.i]
+        length = norm(d)
+        rate = dot(d / length[:, None], self.v[self.j] - self.v[self.i])
+        for number, (old, new) in enumerate(zip(self.scene.materials, materials, strict=True)):
+            here = self.scene.edge_material == number
+            if old != new:
+                state = (part[here] for part in (length, rate, self.a, self.L))
+                self.a[here], self.L[here] = switched(old, new, *state)
+        self._consist(replace(self.scene, materials=materials))
+
     def begin(self, phase: Phase) -> None:
-        """Put the object under a phase's constraints and loads."""
+        """Put the object under a phase's constraints and loads, with its materials if it brings some."""
+        if phase.materials:
+            self.become(phase.materials)
         mass = self.scene.mass[:, None]
         self.held = phase.held[:, None]
         self.mobility = np.where(self.held, 0, 1 / mass)

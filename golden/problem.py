@@ -16,7 +16,8 @@ class Phase:
     """A stretch of time with one set of constraints and loads, for N nodes in `dim` dimensions.
 
     At its start fixed nodes get velocity 0 and driven nodes their prescribed one; a node that is released
-    keeps the velocity it had. No node is both fixed and driven.
+    keeps the velocity it had. No node is both fixed and driven. Before that, other materials take the place of those
+    that were, without a jump in force (`golden.switch`).
     """
 
     name: str
@@ -25,6 +26,7 @@ class Phase:
     velocity: np.ndarray  # (N, dim) m/s, of the driven nodes
     driven: np.ndarray  # (N,) bool
     load: np.ndarray  # (N, dim) N, external force on each node
+    materials: tuple[Material, ...] | None = None  # all of the object's from here on, if others than before
 
     @property
     def held(self) -> np.ndarray:
@@ -63,8 +65,14 @@ class Scene:
 
     @property
     def force_dependent(self) -> bool:
-        """Whether any edge has a damper whose coefficient depends on the force."""
-        return any(not self.materials[m].linear for m in np.unique(self.edge_material))
+        """Whether any edge has, at any time, a damper whose coefficient depends on the force."""
+        used = np.unique(self.edge_material)
+        return any(not materials[m].linear for materials in self.material_sets for m in used)
+
+    @property
+    def material_sets(self) -> list[tuple[Material, ...]]:
+        """The materials that the object begins with, then those that phases bring."""
+        return [self.materials, *(phase.materials for phase in self.phases if phase.materials)]
 
     def per_edge(self, parameter: str) -> np.ndarray:
         """(E,) values of a `Material` parameter."""

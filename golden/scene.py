@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from golden import kinds, schema, stability
-from golden.assignment import assign
+from golden.assignment import assign, changed
 from golden.errors import InputError
+from golden.materials import Material
 from golden.mesh import Mesh
 from golden.problem import Phase, Scene
 from golden.regions import select_nodes, vector
@@ -42,7 +44,7 @@ def _scene(file: schema.SceneFile, path: Path) -> Scene:
     materials, edge_material = assign(file.materials, mesh)
     if not file.phases:
         raise InputError("phases must hold at least one phase, not none")
-    phases = tuple(_phase(file.phases[n], mesh, file.dt, n) for n in range(len(file.phases)))
+    phases = _phases(file, mesh, materials)
     scene = Scene(
         name=file.name or path.stem,
         description=file.description,
@@ -66,6 +68,20 @@ def _mass(table: schema.Mass, mesh: Mesh) -> np.ndarray:
         given = "neither" if table.density is None else "both"
         raise InputError(f"mass must have one of density and total, not {given}")
     return mesh.lumped_mass(table.density or table.total / mesh.measure().sum())
+
+
+def _phases(file: schema.SceneFile, mesh: Mesh, materials: tuple[Material, ...]) -> tuple[Phase, ...]:
+    """The phases, each with the materials that it brings, or None."""
+    phases = []
+    for n, table in enumerate(file.phases):
+        phase, path = _phase(table, mesh, file.dt, n), f"phases[{n}].materials"
+        if table.materials and n == 0:
+            raise InputError(f"{path} must not be there: the object begins with those of materials")
+        if table.materials:
+            materials = changed(table.materials, materials, path)
+            phase = replace(phase, materials=materials)
+        phases.append(phase)
+    return tuple(phases)
 
 
 def _phase(table: schema.Phase, mesh: Mesh, dt: float, number: int) -> Phase:

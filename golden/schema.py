@@ -93,6 +93,7 @@ class Phase(Struct, forbid_unknown_fields=True):
     fixed: list[Region] = []
     driven: list[Driven] = []
     loads: list[Load] = []
+    materials: dict[str, Any] = {}  # without regions: what those of these names are from here on
 
 
 class Frames(Struct, forbid_unknown_fields=True):

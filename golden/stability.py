@@ -21,6 +21,7 @@ half-disc below.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import floor, inf, log10
 from operator import itemgetter
 
@@ -38,13 +39,15 @@ DENSE = 30  # unknowns up to which all eigenvalues are as quick as one
 
 
 def largest_dt(scene: Scene) -> tuple[float, str, str]:
-    """Largest stable step (s), the material that limits it, and whether by its "stiffness" or its "damping".
+    """Largest step (s) that is stable in all phases, the material that limits it, and whether by its "stiffness" or
+    its "damping".
 
     A damper that depends on the force is taken both as stiff (c_max) and as soft as its law ever gets, the
     ratios both free and held by their bounds. The step is inf when nothing limits it.
     """
+    scenes = [replace(scene, materials=materials) for materials in scene.material_sets]
     rate, name, reason = max(
-        (_fastest(scene, ~held, *law) for held in _held(scene) for law in _laws(scene)), key=itemgetter(0))
+        (_fastest(s, ~held, *law) for s in scenes for held in _held(s) for law in _laws(s)), key=itemgetter(0))
     return (TURNING * HALF_DISC / rate if rate else inf), name, reason
 
 

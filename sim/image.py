@@ -8,6 +8,7 @@ from golden import records
 from golden.edge import axis_of, voigt_length
 from golden.formats import Formats
 from golden.image import Image
+from golden.materials import Material
 from golden.problem import Phase, Scene
 from golden.qarray import QArray
 from golden.qformat import Q
@@ -99,11 +100,7 @@ def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray
     edge_order = sorted_edges if edge_order is None else edge_order
     edges = np.sort(ranks(node_order)[scene.mesh.edges[edge_order]], axis=1)
 
-    records, tables = [], []
-    for number, material in enumerate(scene.materials):
-        record, table = coefficients(material, number, units, formats, len(tables))
-        records.append(record)
-        tables += [table.words] if table else []
+    materials, damper = consisting(scene.materials, units, formats)
     x = raw_vectors((scene.mesh.points[node_order] - units.centre) / units.size, formats.position)
     a0 = np.array([ratio(m.a0, formats) for m in scene.materials], np.int64)[scene.edge_material[edge_order]]
     image = Image(
@@ -117,8 +114,8 @@ def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray
         edge_material=scene.edge_material[edge_order],
         length=np.zeros(len(edges), np.int64),
         ratio=a0,
-        materials=records,
-        damper=stack(tables, formats),
+        materials=materials,
+        damper=damper,
     )
     image.length = natural_length(image)
     loaded = Loaded(scene, units, image, node_order, edge_order)
@@ -126,10 +123,15 @@ def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray
     return loaded
 
 
-def stack(tables: list[dict[str, np.ndarray]], formats: Formats) -> dict[str, np.ndarray]:
-    """(T, segments) for each field; at least one table, of zeros, where no damper needs one."""
+def consisting(materials: tuple[Material, ...], units: Units, formats: Formats):
+    """An image's ``materials``, and its ``damper``: at least one table, of zeros, where no damper needs one."""
+    fields, tables = [], []
+    for number, material in enumerate(materials):
+        record, table = coefficients(material, number, units, formats, len(tables))
+        fields.append(record)
+        tables += [table.words] if table else []
     blank = {name: np.zeros(1 << formats.damper_index.width, np.int64) for name in records.damper_word(formats)}
-    return {name: np.stack([t[name] for t in tables or [blank]]) for name in blank}
+    return fields, {name: np.stack([t[name] for t in tables or [blank]]) for name in blank}
 
 
 def natural_length(image: Image) -> np.ndarray:

@@ -10,6 +10,7 @@ from golden.formats import Formats
 from golden.problem import Scene
 from sim import image
 from sim.image import Loaded
+from sim.switch import prepared
 
 
 def load(scene: Scene, edge_order: np.ndarray | None = None) -> Loaded:
@@ -24,10 +25,16 @@ def load(scene: Scene, edge_order: np.ndarray | None = None) -> Loaded:
         raise
     except (ValueError, OverflowError) as error:
         raise InputError(f"the scene must have numbers that the circuit can hold: {error}") from None
-    record = records.material(loaded.image.formats, len(loaded.image.damper["rho_value"]))
-    for material, fields in zip(scene.materials, loaded.image.materials, strict=True):
-        _check(record, fields, f"materials.{material.name} must have coefficients")
+    for held in (loaded, *later(loaded)):
+        record = records.material(held.image.formats, len(held.image.damper["rho_value"]))
+        for material, fields in zip(held.scene.materials, held.image.materials, strict=True):
+            _check(record, fields, f"materials.{material.name} must have coefficients")
     return loaded
+
+
+def later(loaded: Loaded) -> list[Loaded]:
+    """The object with the materials that each phase brings, as it would be at its start."""
+    return [prepared(loaded, materials) for materials in loaded.scene.material_sets[1:]]
 
 
 def _check_speed(scene: Scene) -> None:

@@ -58,6 +58,12 @@ class NativeMachine:
         self.v = v
         self.refresh()
 
+    def take(self, image: Image):
+        """Go on with an image that differs in materials, natural lengths and ratios."""
+        self.image, self.ratio = image, image.ratio.copy()
+        self._damper = words(image.damper, records.damper_word(image.formats))
+        self.refresh()
+
     def refresh(self):
         """Take up changes of the image's materials, loads, masses and edges."""
         image, fmt = self.image, self.image.formats

@@ -16,6 +16,7 @@ from golden.trajectory import Trajectory
 from sim import limits, machines
 from sim import waves as waveforms
 from sim.image import Loaded
+from sim.switch import switch
 from sim.units import Units
 
 COMPARED = "float", "fixed", "rtl"
@@ -116,6 +117,8 @@ def run(
     with (machines.board(loaded.image, link) if link
           else machines.circuit(loaded.image, parameters, waves) if circuit
           else machines.integer_model(loaded.image, engine)) as machine:
+        for held in limits.later(loaded) if circuit else ():
+            machines.check_room(held.image, parameters)
         witness = machines.Witness(loaded.image) if not circuit and engine != "numpy" else None
         frames = _frames(loaded, machine, witness, progress)
         raw = _raw(loaded, frames)
@@ -150,6 +153,10 @@ def _frames(loaded: Loaded, machine, witness, progress) -> list[tuple[np.ndarray
     scene, kept, done = loaded.scene, [], 0
     wanted, checked = set(scene.frames.tolist()), checked_steps(scene) if witness else set()
     for phase in scene.phases:
+        if phase.materials:
+            loaded = switch(loaded, machine, phase.materials)
+            if witness:
+                witness = machines.Witness(loaded.image)
         machine.restart(loaded.start(phase, machine.v))
         if done == 0:
             kept.append(_state(machine))

@@ -10,9 +10,8 @@ from golden import stability
 from golden.errors import InputError
 from golden.materials import Material
 from golden.switch import switched
-from sim.coefficients import coefficients
-from sim.image import Loaded, stack
-from sim.units import expected_trial, full_scale, largest_share
+from sim.image import Loaded, consisting
+from sim.units import largest_share, trials_of
 
 
 def switch(loaded: Loaded, machine, materials: tuple[Material, ...]) -> Loaded:
@@ -36,31 +35,35 @@ def switch(loaded: Loaded, machine, materials: tuple[Material, ...]) -> Loaded:
         If there are more or fewer materials, one needs a smaller time step, or has forces or coefficients that the
         units of this run can't hold.
     """
-    scene, fmt = replace(loaded.scene, materials=tuple(materials)), loaded.image.formats
+    after, fmt = prepared(loaded, tuple(materials)), loaded.image.formats
+    image = replace(after.image, x=machine.x, v=machine.v, length=loaded.image.length.copy(),
+                    ratio=machine.ratio.copy())
+    for number, (old, new) in enumerate(zip(loaded.scene.materials, materials, strict=True)):
+        if old == new:
+            continue
+        edges = image.edge_material == number
+        ratio, natural = switched(old, new, *_state(loaded, machine, edges))
+        for name, values, q in (("ratio", ratio, fmt.ratio), ("length", natural / loaded.units.size, fmt.length)):
+            raw = np.floor(np.ldexp(values, q.frac_bits) + 0.5).astype(np.int64)
+            getattr(image, name)[edges] = raw
+    machine.take(image)
+    return replace(after, image=image)
+
+
+def prepared(loaded: Loaded, materials: tuple[Material, ...]) -> Loaded:
+    """The object with other materials, as it would be at its start. Raises `InputError` as `switch`."""
+    scene, fmt = replace(loaded.scene, materials=materials), loaded.image.formats
     if len(materials) != len(loaded.scene.materials):
         raise InputError(f"materials must be {len(loaded.scene.materials)}, as many as there were, not "
                          f"{len(materials)}")
     stability.check(scene)
-    units = replace(loaded.units, trial=tuple(
-        full_scale(expected_trial(scene, m, loaded.units.velocity)) for m in materials))
-    table, stacks = [], []
+    units = replace(loaded.units, trial=trials_of(scene, materials, loaded.units.velocity))
     for number, m in enumerate(materials):
         if largest_share(m) * units.trial[number] > units.force:
             raise InputError(f"materials.{m.name} must have forces below {units.force:.3g} N, the full scale of this "
                              f"run, not up to {largest_share(m) * units.trial[number]:.3g} N: begin a run with it")
-        record, damper = coefficients(m, number, units, fmt, len(stacks))
-        table.append(record)
-        stacks += [damper.words] if damper else []
-    image = replace(loaded.image, materials=table, damper=stack(stacks, fmt), x=machine.x, v=machine.v,
-                    length=loaded.image.length.copy(), ratio=machine.ratio.copy())
-    for number, (old, new) in enumerate(zip(loaded.scene.materials, materials, strict=True)):
-        edges = image.edge_material == number
-        ratio, natural = switched(old, new, *_state(loaded, machine, edges))
-        for name, values, q in (("ratio", ratio, fmt.ratio), ("length", natural / units.size, fmt.length)):
-            raw = np.floor(np.ldexp(values, q.frac_bits) + 0.5).astype(np.int64)
-            getattr(image, name)[edges] = raw
-    machine.take(image)
-    return replace(loaded, scene=scene, units=units, image=image)
+    fields, damper = consisting(materials, units, fmt)
+    return replace(loaded, scene=scene, units=units, image=replace(loaded.image, materials=fields, damper=damper))
 
 
 def _state(loaded: Loaded, machine, edges):

@@ -50,17 +50,23 @@ class Units:
 
 
 def choose(scene: Scene, formats: Formats) -> Units:
-    """Units that fit the scene's drives, loads, stiffnesses and masses with `HEADROOM`."""
+    """Units that fit the scene's drives, loads, stiffnesses and masses with `HEADROOM`, those of its start."""
     points = scene.mesh.points
     centre = (points.min(axis=0) + points.max(axis=0)) / 2
     fastest = expected_speed(scene) * HEADROOM
     lowest = 1 - formats.displacement.int_bits  # a step must fit the displacement format
     shift = max(lowest, int(-np.ceil(log2(fastest * scene.dt / scene.size)))) if fastest else lowest
     velocity = 2.0**-shift * scene.size / scene.dt
-    trial = tuple(full_scale(expected_trial(scene, m, velocity)) for m in scene.materials)
+    trials = [trials_of(scene, materials, velocity) for materials in scene.material_sets]
+    shares = [largest_share(m) * g for materials, trial in zip(scene.material_sets, trials, strict=True)
+              for m, g in zip(materials, trial, strict=True)]
     loads = [np.abs(p.load).max() + scene.mass.max() * np.abs(scene.gravity).max() for p in scene.phases]
-    force = max(*(largest_share(m) * g for m, g in zip(scene.materials, trial, strict=True)), *loads)
-    return Units(scene.size, centre, scene.dt, shift, full_scale(force), trial)
+    return Units(scene.size, centre, scene.dt, shift, full_scale(max(*shares, *loads)), trials[0])
+
+
+def trials_of(scene: Scene, materials: tuple[Material, ...], velocity: float) -> tuple[float, ...]:
+    """`Units.trial` for these materials."""
+    return tuple(full_scale(expected_trial(scene, m, velocity)) for m in materials)
 
 
 def expected_speed(scene: Scene) -> float:
@@ -68,7 +74,7 @@ def expected_speed(scene: Scene) -> float:
     the strain that drives and loads can cause."""
     driven = [np.linalg.norm(p.velocity, axis=1).max(initial=0.0) for p in scene.phases]
     way = sum(speed * p.steps * scene.dt for speed, p in zip(driven, scene.phases, strict=True))
-    stiffest = max(m.k for m in scene.materials)
+    stiffest = max(m.k for materials in scene.material_sets for m in materials)
     recoil = min(way / scene.size, 1.0) * longest(scene) * np.sqrt(stiffest / scene.mass.min())
     fall = np.sqrt(2 * np.linalg.norm(scene.gravity) * scene.size)
     pushed = max(np.linalg.norm(p.load, axis=1).max() / scene.mass.min() * scene.dt for p in scene.phases)
