@@ -67,7 +67,7 @@ def plan(axes, pair: Pair) -> None:
     axes.text(50, 50, f"sides bulge by\n{paper.mm(read.circuit)} ({100 * read.circuit / read.scale:.1f} %)\n"
               f"float64: {paper.mm(read.float64)}", va="center",
               ha="center", fontsize=7.5, linespacing=1.4)
-    paper.title(axes, f"half height, from above, {pair.circuit.trajectory.t[pair.released]:.3g} s")
+    paper.title(axes, f"half height, {pair.circuit.trajectory.t[pair.released]:.3g} s")
 
 
 def ring(scene: Scene) -> np.ndarray:
