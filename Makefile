@@ -17,11 +17,14 @@ capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
 
 .DEFAULT_GOAL := compare
 .NOTPARALLEL:
-.PHONY: compare verilog timing bitstream flash doctor bench test verify lint lock help clean distclean environment
+.PHONY: compare figures verilog timing bitstream flash doctor bench test verify lint lock help clean distclean environment
 
 compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on float64, integers and simulated circuit
 	@$(run) -m sim compare scenes/*.toml $(lanes) $(updates) --out build/report
 	@echo "report: build/report/index.html, figures: build/report/compare.json"
+
+figures: environment ## draw the paper's figures from runs of the circuit: PNG, SVG, GIF and their numbers in build/figures
+	@$(run) -m sim figures --out build/figures
 
 verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks
 	@$(run) -m hw verilog $(lanes) $(updates) $(capacities) $(family) --out build/verilog

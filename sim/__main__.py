@@ -1,4 +1,5 @@
-"""The command line: ``python -m sim run SCENE ...``, ``python -m sim compare SCENE ...``, and serve, bench."""
+"""The command line: ``python -m sim run SCENE ...``, ``python -m sim compare SCENE ...``, and figures, serve,
+bench."""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from sim.run import BACKENDS, LANES, UPDATES
 
 def parser() -> Parser:
     main = Parser(prog="python -m sim", description="Run scenes on float64, on integers and on the simulated circuit.")
-    commands = main.add_subparsers(dest="command", required=True, metavar="run|compare|serve|bench")
+    commands = main.add_subparsers(dest="command", required=True, metavar="run|compare|figures|serve|bench")
 
     one = commands.add_parser("run", help="run one scene on one backend")
     one.add_argument("scene", metavar="SCENE", help="a scene file (TOML)")
@@ -40,6 +41,15 @@ def parser() -> Parser:
                       help="folder for compare.json and index.html (build/report)")
     many.set_defaults(run=compare)
 
+    drawn = commands.add_parser("figures", help="draw the paper's figures from runs of the circuit")
+    drawn.add_argument("names", nargs="*", metavar="NAME", help="figures, as figure-6 or gravity (all)")
+    drawn.add_argument("--out", default="build/figures", metavar="DIR",
+                       help="folder for PNG, SVG and GIF of each, and figures.json (build/figures)")
+    drawn.add_argument("--backend", default="fixed", choices=("fixed", "rtl"),
+                       help="the circuit's integer model, or its Verilog under Verilator: the same bits (fixed)")
+    drawn.add_argument("--json", action="store_true", help="print the contents of figures.json instead of a table")
+    drawn.set_defaults(run=figures)
+
     board = commands.add_parser("serve", help="the simulated circuit behind its serial link, on a loopback socket")
     board.add_argument("--port", type=port_number, default=0, metavar="PORT", help="of this machine (one that is free)")
     board.set_defaults(run=serve)
@@ -57,7 +67,7 @@ def parser() -> Parser:
                              help=f"edge processors of the circuit ({only}{LANES})")
         command.add_argument("--updates", type=whole, metavar="M",
                              help=f"nodes that the circuit updates in a cycle, 1 or 2 ({only}{UPDATES})")
-    for command in (one, many):
+    for command in (one, many, drawn):
         command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
     return main
 
@@ -142,6 +152,31 @@ def compare(args) -> int:
     wrong = [(entry["scene"], reason) for entry in entries for reason in shortcomings(entry)]
     for name, reason in wrong:
         print(f"error: {name}: {reason}", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+def figures(args) -> int:
+    from sim import folder, terminal
+    from sim.figures import catalogue, make, table
+
+    names = catalogue.chosen(args.names)
+    out = folder.claim(args.out, args.force)
+    entries = make.earlier(out)
+    loaded = make.scenes(names)
+    with terminal.progress(loaded, ("float", args.backend)) as shown:
+        pairs = make.compute(loaded, args.backend, shown)
+    with terminal.bars([(name, make.PICTURES) for name in names]) as shown:
+        drawn = {name: make.draw(name, pairs, out, shown and partial(shown, number))
+                 for number, name in enumerate(names)}
+    make.save(entries | drawn, out)
+    if args.json:
+        print((out / make.DATA).read_text(), end="")
+    else:
+        table.print_readings(drawn)
+        print(f"\nPNG, SVG and GIF of each figure are in {out}, the numbers in {out / make.DATA}")
+    wrong = make.shortcomings(names, pairs)
+    for reason in wrong:
+        print(f"error: {reason}", file=sys.stderr)
     return 1 if wrong else 0
 
 

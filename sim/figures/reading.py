@@ -1,0 +1,121 @@
+"""What is read from the figures' data: each measurement in one place, with what it must be equal to."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from golden.problem import Scene
+from golden.trajectory import Trajectory
+from sim.compare import BOUND
+from sim.figures import single_edge
+from sim.figures.runs import EDGE, Pair
+
+RECOVERY, BULGE = 1e-3, 1e-4
+"""Largest differences that pass: of bounce-back and residual, and of the bulge of a side by the object's size."""
+
+SMALL = 0.01  # of a press: what is smaller is compared by the press
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A quantity of a run of the circuit, of float64, and what it is held against; all in ``unit``."""
+
+    scene: str
+    quantity: str
+    unit: str
+    circuit: float
+    float64: float
+    against: str  # "closed form" or "float64"
+    expected: float
+    scale: float  # what a difference is divided by
+    bound: float  # of the divided difference
+    positive: bool = False  # whether it must be above 0 as well
+
+    @property
+    def difference(self) -> float:
+        """How far the circuit is from what is expected, as part of ``scale``."""
+        return abs(self.circuit - self.expected) / self.scale
+
+    @property
+    def passes(self) -> bool:
+        return self.difference <= self.bound and (self.circuit > 0 or not self.positive)
+
+    def shortcoming(self) -> str:
+        """What keeps it from passing."""
+        above = f", and above 0, not {self.circuit:.3g} {self.unit}" if self.positive else ""
+        return (f"{self.scene}: {self.quantity} must be within {self.bound:g} of {self.against}, "
+                f"not {self.difference:.3g} off{above}")
+
+    def entry(self) -> dict:
+        return asdict(self) | {"difference": self.difference, "passes": self.passes}
+
+
+def press(pair: Pair) -> list[Reading]:
+    """Bounce-back and residual (m) of what was pressed: an edge by the closed form, a block by float64.
+
+    Each is compared as a part of itself; one that is next to nothing (residual of the viscoelastic, bounce-back of
+    the plastic), as a part of the press.
+    """
+    (depth, back), (depth64, back64) = (pair.face.press(pair.scene, run) for run in pair.trajectories)
+    against, expected_depth, expected = "float64", depth64, back64
+    if pair.scene.name.startswith(EDGE):
+        against, expected_depth = "closed form", single_edge.DEPTH
+        expected = single_edge.bounce_back(pair.scene.materials[0])
+
+    def reading(quantity, circuit, float64, expected):
+        scale = abs(expected) if abs(expected) > SMALL * expected_depth else expected_depth
+        return Reading(pair.scene.name, quantity, "m", circuit, float64, against, expected, scale, RECOVERY)
+
+    return [reading("bounce-back", back, back64, expected),
+            reading("residual", depth - back, depth64 - back64, expected_depth - expected)]
+
+
+def deformation(pair: Pair, run: Trajectory) -> np.ndarray:
+    """(F,) m: how deep the watched face is pressed, or how far it has sunk."""
+    height = pair.face.height(run)
+    return (pair.face.direction if pair.face.pressed else -pair.face.direction) * (height - height[0])
+
+
+def bulges(scene: Scene, x: np.ndarray) -> np.ndarray:
+    """(4,) m: how far the middles of a block's four upright sides are pushed outwards, from positions (N, 3)."""
+    initial, nodes = scene.mesh.points, side_middles(scene)
+    outwards = (initial - initial.mean(axis=0))[nodes]
+    outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
+    return np.einsum("ij,ij->i", (x - initial)[nodes], outwards)
+
+
+def side_middles(scene: Scene) -> np.ndarray:
+    """(4,) the nodes in the middle of a block's sides: lower and upper x, lower and upper y."""
+    points = scene.mesh.points
+    low, high = points.min(axis=0), points.max(axis=0)
+    wanted = np.tile((low + high) / 2, (4, 1))
+    wanted[[0, 1], 0] = low[0], high[0]
+    wanted[[2, 3], 1] = low[1], high[1]
+    return np.linalg.norm(points[None] - wanted[:, None], axis=2).argmin(axis=1)
+
+
+def bulge(pair: Pair) -> Reading:
+    """The mean bulge of the four sides (m) while the block is held pressed."""
+    circuit, float64 = (float(bulges(pair.scene, x[pair.released]).mean()) for x in pair.x)
+    return Reading(pair.scene.name, "side bulge", "m", circuit, float64, "float64", float64, pair.scene.size, BULGE,
+                   positive=True)
+
+
+def bulge_over_time(pair: Pair, run: Trajectory) -> np.ndarray:
+    """(F,) m: the mean bulge of a block's sides."""
+    return np.array([bulges(pair.scene, x).mean() for x in run.x])
+
+
+def fall(pair: Pair) -> Reading:
+    """The height (m) that a block has lost under its own weight in the end."""
+    circuit, float64 = (float(deformation(pair, run)[-1]) for run in pair.trajectories)
+    return Reading(pair.scene.name, "height lost", "m", circuit, float64, "float64", float64, pair.scene.size,
+                   BOUND[pair.scene.force_dependent])
+
+
+def apart(pair: Pair) -> Reading:
+    """The largest distance between a node in circuit and in float64, in any frame, as part of the object's size."""
+    return Reading(pair.scene.name, "max dx", "size", pair.difference(), 0.0, "float64", 0.0, 1.0,
+                   BOUND[pair.scene.force_dependent])

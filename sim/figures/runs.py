@@ -1,0 +1,68 @@
+"""What the figures are drawn from: a scene on the circuit, and on float64 beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from golden import scene as scenes
+from golden.problem import Scene
+from golden.trajectory import Trajectory
+from sim.compare import dx_rel
+from sim.face import Face, watched
+from sim.figures import single_edge
+from sim.run import Result, run
+
+SHIPPED = Path(__file__).parents[2] / "scenes"
+EDGE = "edge-"
+"""Before the name of a shipped scene: a single edge of that scene's first material."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """One scene and its two runs, with the same frames."""
+
+    scene: Scene
+    circuit: Result
+    float64: Result
+
+    @property
+    def x(self) -> tuple[np.ndarray, np.ndarray]:
+        """(F, N, dim) m, twice: circuit and float64."""
+        return self.circuit.trajectory.x, self.float64.trajectory.x
+
+    @property
+    def trajectories(self) -> tuple[Trajectory, Trajectory]:
+        return self.circuit.trajectory, self.float64.trajectory
+
+    @property
+    def face(self) -> Face:
+        return watched(self.scene)
+
+    @property
+    def released(self) -> int:
+        """The frame in which the last phase begins: the object as it is held, before it is let go."""
+        return int(self.scene.end_frames[-2])
+
+    def frame(self, t: float) -> int:
+        """The frame closest to the time t (s), the last one for any later time."""
+        return int(np.abs(self.circuit.trajectory.t - t).argmin())
+
+    def difference(self) -> float:
+        """The largest distance between a node of the circuit and of float64 in any frame, by the object's size."""
+        return float(dx_rel(self.scene, self.circuit, self.float64).max())
+
+
+def load(name: str) -> Scene:
+    """The scene of a name: one that ships, or a single edge of its material."""
+    shipped = scenes.load(SHIPPED / f"{name.removeprefix(EDGE)}.toml")
+    return single_edge.scene(name, shipped.materials[0]) if name.startswith(EDGE) else shipped
+
+
+def pair(scene: Scene, progress=None, *, backend: str) -> Pair:
+    """Run the scene on float64 and on the circuit; ``progress(backend, steps done)``."""
+    float64, circuit = (run(scene, on, progress=progress and partial(progress, on)) for on in ("float", backend))
+    return Pair(scene, circuit, float64)

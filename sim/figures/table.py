@@ -1,0 +1,22 @@
+"""What was read from the figures, on the terminal."""
+
+from __future__ import annotations
+
+from sim.compare import power
+
+HEAD = "scene", "quantity", "circuit", "expected", "against", "difference", "allowed", ""
+
+
+def print_readings(entries: dict[str, dict]) -> None:
+    """One line a number, on stdout, and each once: lengths in mm, differences as part of the number or of the size."""
+    rows = [HEAD]
+    for read in (read for entry in entries.values() for read in entry["readings"]):
+        shown = (f"{round(1e3 * read[key], 4) + 0:.4f} mm" if read["unit"] == "m" else power(read[key])
+                 for key in ("circuit", "expected"))
+        rows.append((read["scene"], read["quantity"], *shown, read["against"], power(read["difference"]),
+                     power(read["bound"]), "passes" if read["passes"] else "FAILS"))
+    rows = list(dict.fromkeys(rows))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = [*map(str.ljust, row[:2], widths), *map(str.rjust, row[2:], widths[2:])]
+        print("  ".join(cells).rstrip())
