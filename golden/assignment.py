@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from inspect import Parameter, signature
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -76,11 +75,8 @@ def _material(name: str, table: Any, path: str) -> Material:
 
 def _per_edge(owner: np.ndarray, mesh: Mesh) -> np.ndarray:
     """(E,) the smallest index of a material among the elements around each edge."""
-    count, first = len(mesh.points), np.full(len(mesh.edges), np.iinfo(np.int64).max)
-    number = mesh.edges @ [count, 1]  # ascending, because the edges are in order
-    for pair in combinations(range(mesh.cells.shape[1]), 2):
-        ends = np.sort(mesh.cells[:, pair], axis=1)
-        np.minimum.at(first, np.searchsorted(number, ends @ [count, 1]), owner)
+    first = np.full(len(mesh.edges), np.iinfo(np.int64).max)
+    np.minimum.at(first, mesh.cell_edges(), owner[:, None])
     return first
 
 
