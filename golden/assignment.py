@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from inspect import Parameter, signature
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -18,22 +17,34 @@ from golden.regions import Region, select_cells
 def assign(tables: dict[str, Any], mesh: Mesh) -> tuple[tuple[Material, ...], np.ndarray]:
     """Materials in the file's order, and (E,) the index of each edge's material.
 
-    An edge between elements of different materials has the one that comes first in the file. Raises
-    `InputError` when a parameter is wrong or an element does not have exactly one material.
+    A material without a region has the elements that the others leave. An edge between elements of different
+    materials has the one that comes first in the file. Raises `InputError` when a parameter is wrong or an element
+    does not have exactly one material.
     """
     if not tables:
         raise InputError("materials must hold at least one material, not none")
     owner = np.full(len(mesh.cells), -1)
-    materials = []
+    materials, rest = [], None  # the material that has what the others leave
     for index, (name, table) in enumerate(tables.items()):
         path = f"materials.{name}"
         materials.append(_material(name, table, path))
-        cells = _cells(table, mesh, path, alone=len(tables) == 1)
+        if "region" not in table:
+            if rest is not None:
+                raise InputError(f"{path}.region must be given, as materials.{materials[rest].name} already has what "
+                                 "the others leave")
+            rest = index
+            continue
+        region = schema.convert(table["region"], Region, f"{path}.region")
+        cells = select_cells(region, mesh, f"{path}.region")
         if (taken := np.flatnonzero(cells & (owner >= 0))).size:
             other = materials[owner[taken[0]]].name
             raise InputError(f"{path}.region must not overlap materials.{other}.region: both hold "
                              f"{_at(mesh, taken)}")
         owner[cells] = index
+    if rest is not None:
+        if (owner >= 0).all():
+            raise InputError(f"materials.{materials[rest].name} must have an element, but the others leave none")
+        owner[owner < 0] = rest
     if (left := np.flatnonzero(owner < 0)).size:
         raise InputError(f"materials must cover every element, but none holds {_at(mesh, left)}")
     return tuple(materials), _per_edge(owner, mesh)
@@ -77,23 +88,10 @@ def _material(name: str, table: Any, path: str) -> Material:
         raise error.under(path) from None
 
 
-def _cells(table: dict[str, Any], mesh: Mesh, path: str, alone: bool) -> np.ndarray:
-    """(M,) bool: the elements of one material; the only material of an object may leave its region out."""
-    if "region" in table:
-        region = schema.convert(table["region"], Region, f"{path}.region")
-        return select_cells(region, mesh, f"{path}.region")
-    if not alone:
-        raise InputError(f"{path}.region must be given, as there are several materials")
-    return np.ones(len(mesh.cells), dtype=bool)
-
-
 def _per_edge(owner: np.ndarray, mesh: Mesh) -> np.ndarray:
     """(E,) the smallest index of a material among the elements around each edge."""
-    count, first = len(mesh.points), np.full(len(mesh.edges), np.iinfo(np.int64).max)
-    number = mesh.edges @ [count, 1]  # ascending, because the edges are in order
-    for pair in combinations(range(mesh.cells.shape[1]), 2):
-        ends = np.sort(mesh.cells[:, pair], axis=1)
-        np.minimum.at(first, np.searchsorted(number, ends @ [count, 1]), owner)
+    first = np.full(len(mesh.edges), np.iinfo(np.int64).max)
+    np.minimum.at(first, mesh.cell_edges(), owner[:, None])
     return first
 
 

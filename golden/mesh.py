@@ -66,6 +66,13 @@ class Mesh:
         """(E,) m: how long each edge is."""
         return np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1)
 
+    def cell_edges(self) -> np.ndarray:
+        """(M, 3 or 6) indices of each cell's edges."""
+        count = len(self.points)
+        number = self.edges @ [count, 1]  # ascending, because the edges are in order
+        pairs = np.sort(self.cells[:, list(combinations(range(self.cells.shape[1]), 2))], axis=2)
+        return np.searchsorted(number, pairs @ [count, 1])
+
     def lumped_mass(self, density) -> np.ndarray:
         """(N,) kg: each cell's mass shared by its nodes; `density`, one or (M,), in kg/m^2 or kg/m^3."""
         corners = self.cells.shape[1]

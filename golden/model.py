@@ -79,12 +79,16 @@ class Model:
             sigma[self.varying], rho[self.varying] = solve_damper(*self.damper, g[self.varying])
         return -rho * g, ((1 - a) * ldot - sigma * g) / length
 
-    def edges(self, x, v, a):
-        """Sum of the edges' forces on each node (N, dim), and da/dt (E,)."""
+    def along(self, x, v, a):
+        """Of each edge its direction (E, dim), the force along it (E,) and da/dt (E,), as `edge_law` has them."""
         d = x[self.j] - x[self.i]
         length = norm(d)
         u = d / length[:, None]
-        f, a_rate = self.edge_law(length, dot(u, v[self.j] - v[self.i]), a)
+        return u, *self.edge_law(length, dot(u, v[self.j] - v[self.i]), a)
+
+    def edges(self, x, v, a):
+        """Sum of the edges' forces on each node (N, dim), and da/dt (E,)."""
+        u, f, a_rate = self.along(x, v, a)
         push = (f[:, None] * u).ravel()
         force = np.bincount(self.component, np.concatenate([push, -push]), x.size)
         return force.reshape(x.shape), a_rate

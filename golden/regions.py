@@ -1,4 +1,4 @@
-"""Regions of an object, as a scene file names them: a box, a plane, or a list of nodes."""
+"""Regions of an object, as a scene file names them: a box, a plane, a ball, or a list of nodes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from msgspec import Struct
 from golden.errors import InputError
 from golden.mesh import Mesh
 
-TOLERANCE = 1e-6  # of the object's size: how far outside a box or off a plane a point still counts
+TOLERANCE = 1e-6  # of the object's size: how far outside a box or a ball or off a plane a point still counts
 
 
 class Extent(Struct, forbid_unknown_fields=True):
@@ -26,18 +26,29 @@ class Plane(Struct, forbid_unknown_fields=True):
     tolerance: float | None = None
 
 
+class Ball(Struct, forbid_unknown_fields=True):
+    """What is at most `radius` (m) away from `center` (m): in two dimensions a disc."""
+
+    center: list[float]
+    radius: float
+
+
 class Region(Struct, forbid_unknown_fields=True, kw_only=True):
-    """Exactly one of a box, a plane and a list of nodes. Points on the border belong to it."""
+    """Exactly one of a box, a plane, a ball and a list of nodes. Points on the border belong to it."""
 
     box: Extent | None = None
     plane: Plane | None = None
+    ball: Ball | None = None
     nodes: list[int] | None = None
+
+
+KINDS = Region.__struct_fields__
 
 
 def select_nodes(region: Region, mesh: Mesh, path: str) -> np.ndarray:
     """(N,) bool: the nodes in the region. `path` is its place in the file.
 
-    Raises `InputError` when the region is not one of the three kinds, doesn't fit the mesh, or is empty.
+    Raises `InputError` when the region is not one of the kinds, doesn't fit the mesh, or is empty.
     """
     _exactly_one(region, path)
     if region.nodes is not None:
@@ -68,9 +79,9 @@ def vector(values: list[float], dim: int, path: str) -> np.ndarray:
 
 
 def _exactly_one(region: Region, path: str) -> None:
-    given = [kind for kind in ("box", "plane", "nodes") if getattr(region, kind) is not None]
+    given = [kind for kind in KINDS if getattr(region, kind) is not None]
     if len(given) != 1:
-        raise InputError(f"{path} must have one of box, plane and nodes, not {' and '.join(given) or 'none'}")
+        raise InputError(f"{path} must have one of {', '.join(KINDS)}, not {' and '.join(given) or 'none'}")
 
 
 def _listed(nodes: list[int], count: int, path: str) -> np.ndarray:
@@ -93,6 +104,11 @@ def _inside(region: Region, points: np.ndarray, size: float, path: str) -> np.nd
         if tolerance < 0:
             raise InputError(f"{path}.plane.tolerance must be a number of at least 0, not {tolerance}")
         return np.abs(points[:, axes.index(region.plane.axis)] - region.plane.at) <= tolerance
+    if region.ball is not None:
+        if region.ball.radius <= 0:
+            raise InputError(f"{path}.ball.radius must be a number above 0, not {region.ball.radius}")
+        center = vector(region.ball.center, dim, f"{path}.ball.center")
+        return np.linalg.norm(points - center, axis=1) <= region.ball.radius + TOLERANCE * size
     low = vector(region.box.min, dim, f"{path}.box.min")
     high = vector(region.box.max, dim, f"{path}.box.max")
     if (low > high).any():

@@ -1,5 +1,4 @@
-"""The command line: ``python -m sim run SCENE ...``, ``python -m sim compare SCENE ...``, and figures, serve,
-bench."""
+"""The command line: ``python -m sim run SCENE ...``, ``python -m sim compare SCENE ...``, and what else helps."""
 
 from __future__ import annotations
 
@@ -19,7 +18,7 @@ from sim.run import BACKENDS, LANES, UPDATES
 
 def parser() -> Parser:
     main = Parser(prog="python -m sim", description="Run scenes on float64, on integers and on the simulated circuit.")
-    commands = main.add_subparsers(dest="command", required=True, metavar="run|compare|figures|serve|bench")
+    commands = main.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     one = commands.add_parser("run", help="run one scene on one backend")
     one.add_argument("scene", metavar="SCENE", help="a scene file (TOML)")
@@ -50,6 +49,13 @@ def parser() -> Parser:
     drawn.add_argument("--json", action="store_true", help="print the contents of figures.json instead of a table")
     drawn.set_defaults(run=figures)
 
+    kept = commands.add_parser("export", help="write a run in a form that other programs read")
+    kept.add_argument("run_folder", metavar="RUN", help="folder that `run` left")
+    kept.add_argument("--vtu", action="store_true", required=True,
+                      help="for ParaView: run.pvd and a file for each frame")
+    kept.add_argument("--out", metavar="DIR", help="folder to write to (RUN/vtu)")
+    kept.set_defaults(run=export)
+
     board = commands.add_parser("serve", help="the simulated circuit behind its serial link, on a loopback socket")
     board.add_argument("--port", type=port_number, default=0, metavar="PORT", help="of this machine (one that is free)")
     board.set_defaults(run=serve)
@@ -67,7 +73,7 @@ def parser() -> Parser:
                              help=f"edge processors of the circuit ({only}{LANES})")
         command.add_argument("--updates", type=whole, metavar="M",
                              help=f"nodes that the circuit updates in a cycle, 1 or 2 ({only}{UPDATES})")
-    for command in (one, many, drawn):
+    for command in (one, many, drawn, kept):
         command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
     return main
 
@@ -178,6 +184,16 @@ def figures(args) -> int:
     for reason in wrong:
         print(f"error: {reason}", file=sys.stderr)
     return 1 if wrong else 0
+
+
+def export(args) -> int:
+    from sim import export, folder, store, terminal
+
+    scene, _, trajectory = store.load(args.run_folder)
+    out = folder.claim(args.out or Path(args.run_folder) / "vtu", args.force)
+    *frames, collection = export.vtu(scene, trajectory, out, terminal.shown("frames"))
+    print(f"{scene.name}: {len(frames)} frames in {collection}")
+    return 0
 
 
 def serve(args) -> int:

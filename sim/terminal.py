@@ -46,6 +46,16 @@ def steps(scene: Scene, backend: str):
         yield shown and (lambda done: shown(0, backend, done))
 
 
+def shown(what: str):
+    """A function that gives the items of a sequence one by one, with a bar on stderr where that is a terminal."""
+    if not sys.stderr.isatty():
+        return iter
+    from rich.console import Console
+    from rich.progress import track
+
+    return lambda items: track(items, what, console=Console(stderr=True), transient=True)
+
+
 HEAD = "scene", "dim", "nodes", "edges", "steps", "rtl=fixed", "max dx", "allowed", "max da", "saturated", "s", ""
 
 

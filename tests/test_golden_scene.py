@@ -85,6 +85,14 @@ def test_material_by_element_and_first_on_shared_edges(tmp_path):
     np.testing.assert_array_equal(swapped.edge_material, ends.min(axis=1) < 0.1 - 1e-9)  # the seam is clay
 
 
+def test_one_material_has_what_the_others_leave(tmp_path):
+    both = load(written(tmp_path, changed(SCENE, GEL, TWO)))
+    for region in ("region = { box = { min = [0, 0], max = [0.1, 0.1] } }",
+                   "region = { box = { min = [0.1, 0], max = [0.2, 0.1] } }"):
+        rest = load(written(tmp_path, changed(SCENE, GEL, changed(TWO, region, ""))))
+        np.testing.assert_array_equal(rest.edge_material, both.edge_material)
+
+
 def test_material_by_list_of_nodes(tmp_path):
     """An element belongs to a list of nodes that has all of its nodes."""
     left, right = "[0, 1, 3, 4, 6, 7]", "[1, 2, 4, 5, 7, 8]"
@@ -99,6 +107,7 @@ def test_material_by_list_of_nodes(tmp_path):
     BOTTOM,
     '{ plane = { axis = "y", at = 0.01, tolerance = 0.02 } }',
     "{ box = { min = [-1, -1], max = [1, 0.0] } }",
+    "{ ball = { center = [0.1, -0.4], radius = 0.415 } }",
     "{ nodes = [2, 0, 1, 1] }",
 ])
 def test_regions_that_select_the_same(tmp_path, region):

@@ -4,21 +4,22 @@ import re
 import shlex
 from pathlib import Path
 
+import documents
 import pytest
 
+from golden import __main__ as golden
 from golden import model, scene
 from hw import __main__ as cli
 from hw.docs import TABLES, updated
 from hw.parameters import Parameters
-from sim.__main__ import parser
+from sim import __main__ as sim
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text()
 
 
 def blocks(language: str = "") -> list[str]:
-    fenced = re.findall(r"^```(\w*)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-    return [text for name, text in fenced if name == language]
+    return [block.text for block in documents.blocks(README) if block.language == language]
 
 
 def test_tables_are_fresh():
@@ -64,17 +65,17 @@ def test_the_scene_runs(tmp_path):
     assert height.min() < 0.076 < 0.08 < height[-1] < 0.097  # pressed, and back part of the way
 
 
-def test_sim_commands_parse():
-    lines = [line for block in blocks() for line in block.splitlines() if "python -m sim" in line]
-    assert len(lines) >= 2
+@pytest.mark.parametrize(("package", "parser"), [("sim", sim.parser), ("golden", golden.parser), ("hw", cli.parser)])
+def test_commands_parse(package, parser):
+    lines = [line for block in blocks() for line in block.splitlines() if f"python -m {package} " in line]
+    assert lines
     for line in lines:
         parser().parse_args(shlex.split(line)[3:])
 
 
 def test_make_targets_exist():
-    targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
     named = set(re.findall(r"(?:`|^)make ([a-z]+)", README, re.MULTILINE))
-    assert {"test", "verilog", "lint", "help"} <= named <= targets
+    assert {"test", "verilog", "lint", "help"} <= named <= documents.targets()
 
 
 def test_files_and_folders_exist():

@@ -161,9 +161,9 @@ HELP = "(see python -m sim run --help)"
 
 
 @pytest.mark.parametrize("arguments, message", [
-    ([], "the following arguments are required: run|compare|figures|serve|bench (see python -m sim --help)"),
-    (["walk"], "argument run|compare|figures|serve|bench: invalid choice: 'walk' (choose from 'run', 'compare', "
-     "'figures', 'serve', 'bench') (see python -m sim --help)"),
+    ([], "the following arguments are required: COMMAND (see python -m sim --help)"),
+    (["walk"], "argument COMMAND: invalid choice: 'walk' (choose from 'run', 'compare', 'figures', 'export', 'serve', "
+     "'bench') (see python -m sim --help)"),
     (["run", "s.toml", "--out", "o"], f"the following arguments are required: --backend {HELP}"),
     (["run", "s.toml", "--backend", "fixed"], f"the following arguments are required: --out {HELP}"),
     (["run", "s.toml", "--backend", "gpu", "--out", "o"], "argument --backend: invalid choice: 'gpu' "

@@ -26,7 +26,7 @@ def fixed():
 
 
 def test_there_are_scenes():
-    assert len(SCENES) >= 10
+    assert len(SCENES) >= 13
 
 
 @pytest.mark.parametrize("lanes", [1, 2, 4])

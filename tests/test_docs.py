@@ -1,0 +1,106 @@
+"""The documents beside the README are true: the tutorial runs, figures are the code's, links lead somewhere."""
+import re
+
+import documents
+import pytest
+
+from environment import ROOT
+from golden import capacity, scene, stability
+from golden.rk4 import RK4
+from hw.core import datapaths
+from hw.latency import latencies
+from hw.parameters import Parameters
+from sim.compare import BOUND, power
+from sim.cycles import cycles_per_step
+
+PARAMETERS = Parameters()
+FORMATS = PARAMETERS.formats
+UPDATED = "issue to its new state in the lanes' memories"
+DOCS = sorted((ROOT / "docs").glob("*.md"))
+
+
+def text(name):
+    return (ROOT / "docs" / f"{name}.md").read_text()
+
+
+def test_the_tutorial_runs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    blocks = documents.blocks(text("tutorial"))
+    reader = documents.Reader(capsys)
+    for block in blocks:
+        reader.take(block, tmp_path)
+    count = {language: sum(block.language == language for block in blocks) for language in ("toml", "sh", "python")}
+    assert count["toml"] >= 3 and count["sh"] >= 6 and count["python"] >= 3
+
+
+def test_what_the_tutorial_says_is_looked_at(tmp_path, monkeypatch, capsys):
+    """Other words, another number or another exit code than those of a block are noticed."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my").mkdir()
+    reader = documents.Reader(capsys)
+    for printed, said in (("a 1.0 b", "a 1.0 c"), ("a 1.0", "a 1.3"), ("error: a", "error: a")):
+        reader.take(documents.Block("python", "", f"print({printed!r})"), tmp_path)
+        with pytest.raises(AssertionError):
+            reader.take(documents.Block("text", "", said + "\n"), tmp_path)
+    reader.take(documents.Block("python", "", "print('took 1.3 in 2 s, all')"), tmp_path)
+    reader.take(documents.Block("text", "", "took 1.2 in 9 s, all\n"), tmp_path)
+
+
+@pytest.mark.parametrize("path", DOCS, ids=lambda path: path.stem)
+def test_links_lead_somewhere(path):
+    targets = re.findall(r"\]\(([^)#]+)[^)]*\)", path.read_text())
+    assert targets
+    for target in targets:
+        assert (path.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("path", DOCS, ids=lambda path: path.stem)
+def test_the_readme_links_to_it(path):
+    assert f"](docs/{path.name})" in (ROOT / "README.md").read_text()
+
+
+def figures_of_the_method():
+    return [
+        f"{RK4.stages} evaluations of\nall edges", f"must stay below {stability.HALF_DISC}, of which "
+        f"{stability.TURNING} is used", f"whole number of {FORMATS.state} bits",
+        f"last bit is 2^-{FORMATS.position.frac_bits} of the object's size", f"factors of {FORMATS.operand} bits",
+        f"below {power(BOUND[False])} of the\nobject's size, and {power(BOUND[True])} with dampers",
+        f"holds {PARAMETERS.nodes} nodes and {PARAMETERS.edges} edges, {PARAMETERS.materials} materials, and "
+        f"{PARAMETERS.tables} of them", f"no more than {capacity.most_at_a_node(FORMATS)} edges may meet at a node",
+    ]
+
+
+def figures_of_the_circuit():
+    edge, node = ([n for n in datapath.graph.nodes if n.kind == "mul" and not PARAMETERS.cost.narrow_product(n)]
+                  for datapath in datapaths(PARAMETERS))
+    cycles = {what: number for _, what, number in latencies(PARAMETERS)}
+    busiest = cycles_per_step(scene.load(ROOT / "scenes" / "viscoelastic-3d.toml"), PARAMETERS.lanes, 1)
+    return [
+        f"takes {RK4.stages} rounds", f"{len(edge)} multipliers of {FORMATS.operand} bits",
+        f"sums {cycles['issue to its force on both nodes']} cycles after", f"another {len(node)} multipliers",
+        f"copy {cycles[UPDATED]} cycles later",
+        f"wide enough for {capacity.most_at_a_node(FORMATS)}\nedges",
+        f"At least {cycles['an edge to the next edge of the same node, at least']} cycles lie",
+        f"{busiest} cycles are {busiest / 100:.1f} microseconds", f"words of {FORMATS.state} bits",
+        f"factors have {FORMATS.operand} bits", f"with {1 << FORMATS.inverse_index.width} straight pieces",
+        f"two curves of {1 << FORMATS.damper_index.width} pieces",
+        f"for {PARAMETERS.nodes} nodes and {PARAMETERS.edges} edges",
+    ]
+
+
+@pytest.mark.parametrize(("name", "figures"), [("method", figures_of_the_method), ("circuit", figures_of_the_circuit)])
+def test_figures_are_the_codes(name, figures):
+    said = " ".join(text(name).split())
+    for figure in figures():
+        assert " ".join(figure.split()) in said, figure
+
+
+def test_cycles_of_a_step_are_the_cycle_models():
+    rows = re.findall(r"^\| (scenes/\S+) \| (\d+) \| (\d) \| (\d+) \| (\d+) %", text("circuit"), re.MULTILINE)
+    assert len(rows) == 5
+    for path, edges, lanes, cycles, busy in rows:
+        one = scene.load(ROOT / path)
+        expected = cycles_per_step(one, int(lanes), 1)
+        issued = 100 * 4 * -(-len(one.mesh.edges) // int(lanes)) / expected
+        assert (int(edges), int(cycles)) == (len(one.mesh.edges), expected)
+        assert int(busy) == round(issued)
