@@ -30,7 +30,8 @@ def parser() -> Parser:
     one.add_argument("--waves", nargs="?", const="vcd", choices=waves.FORMATS, metavar="vcd|fst",
                      help="write the waveforms of the circuit's first 5000 busy cycles as well "
                           "(rtl; vcd, which is larger but needs no library)")
-    one.add_argument("--out", required=True, metavar="DIR", help="folder for trajectory.npz and summary.json")
+    one.add_argument("--out", required=True, metavar="DIR",
+                     help="folder for scene.npz, trajectory.npz and summary.json")
     one.set_defaults(run=run)
 
     many = commands.add_parser("compare", help="run scenes on all backends side by side and report the differences")

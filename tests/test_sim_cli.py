@@ -52,7 +52,7 @@ def refused(arguments, message, capsys):
 def test_run_writes_the_trajectory_and_a_summary(backend, scene, tmp_path, capsys):
     out = tmp_path / "a" / "b"
     assert main(["run", scene, "--backend", backend, "--out", str(out)]) == 0
-    assert {path.name for path in out.iterdir()} == {MARK, "trajectory.npz", "summary.json"}
+    assert {path.name for path in out.iterdir()} == {MARK, "scene.npz", "trajectory.npz", "summary.json"}
     loaded = scenes.load(scene)
     kept = run(loaded, backend).trajectory
     with np.load(out / "trajectory.npz") as archive:
@@ -91,7 +91,7 @@ def test_a_later_run_replaces_the_earlier_ones_files(scene, tmp_path):
     (out / "notes.txt").write_text("the user's")
     assert main(["run", scene, "--backend", "float", "--out", str(out)]) == 0
     assert json.loads((out / "summary.json").read_text())["backend"] == "float"
-    assert {path.name for path in out.iterdir()} == {MARK, "trajectory.npz", "summary.json", "notes.txt"}
+    assert {path.name for path in out.iterdir()} == {MARK, "scene.npz", "trajectory.npz", "summary.json", "notes.txt"}
 
 
 def test_saturation_in_a_run_exits_1(tmp_path, capsys):
