@@ -62,6 +62,11 @@ class Scene:
         return sum(phase.steps for phase in self.phases)
 
     @property
+    def end_frames(self) -> np.ndarray:
+        """(P,) int: the frame at the end of each phase."""
+        return np.searchsorted(self.frames, np.cumsum([phase.steps for phase in self.phases]))
+
+    @property
     def force_dependent(self) -> bool:
         """Whether any edge has a damper whose coefficient depends on the force."""
         return any(not self.materials[m].linear for m in np.unique(self.edge_material))

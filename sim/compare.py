@@ -29,8 +29,7 @@ class Comparison:
 
     def dx_rel(self) -> np.ndarray:
         """(F,) largest distance, over the nodes, between a position in integers and in float64, by object's size."""
-        apart = np.linalg.norm(self.fixed.trajectory.x - self.float64.trajectory.x, axis=2)
-        return apart.max(axis=1) / self.scene.size
+        return dx_rel(self.scene, self.fixed, self.float64)
 
     def entry(self) -> dict:
         """The scene's object in compare.json."""
@@ -68,6 +67,12 @@ def compare(scene: Scene, *, lanes: int = LANES, updates: int = UPDATES,
             told(0)  # loading takes its time, the circuit's most of all
         results.append(run(scene, backend, lanes=lanes, updates=updates, progress=told))
     return Comparison(scene, *results, perf_counter() - began)
+
+
+def dx_rel(scene: Scene, one: Result, other: Result) -> np.ndarray:
+    """(F,) largest distance, over the nodes, between a position in one run and in the other, by the object's size."""
+    apart = np.linalg.norm(one.trajectory.x - other.trajectory.x, axis=2)
+    return apart.max(axis=1) / scene.size
 
 
 def shortcomings(entry: dict) -> list[str]:

@@ -29,15 +29,19 @@ class Face:
         nodes = self.nodes if self.pressed else slice(None)
         return self.direction * trajectory.reaction[:, nodes, self.axis].sum(axis=1)
 
-    def recovery(self, scene: Scene, trajectory: Trajectory) -> float | None:
-        """How much of the press is undone in the end, 0 to 1; None if nothing pressed or nothing was let go."""
+    def press(self, scene: Scene, trajectory: Trajectory) -> tuple[float, float] | None:
+        """How deep the face was pressed, and how far it came back in the end (m, both along the press); None if nothing
+        pressed or nothing was let go."""
         driving = [n for n, phase in enumerate(scene.phases) if (phase.driven & self.nodes).any()]
         if not self.pressed or (scene.phases[-1].held & self.nodes).any():
             return None
-        pressed = int(np.searchsorted(scene.frames, sum(phase.steps for phase in scene.phases[: driving[-1] + 1])))
-        height = self.height(trajectory)
-        way = height[pressed] - height[0]
-        return float((height[pressed] - height[-1]) / way) if way else None
+        initial, pressed, final = self.height(trajectory)[[0, scene.end_frames[driving[-1]], -1]]
+        return float(self.direction * (pressed - initial)), float(self.direction * (pressed - final))
+
+    def recovery(self, scene: Scene, trajectory: Trajectory) -> float | None:
+        """How much of the press is undone in the end, 0 to 1; None if nothing pressed or nothing was let go."""
+        depth, back = self.press(scene, trajectory) or (0.0, 0.0)
+        return back / depth if depth else None
 
 
 def watched(scene: Scene) -> Face:

@@ -11,8 +11,9 @@ from sim.run import COMPARED
 
 
 @contextmanager
-def progress(scenes: list[Scene], backends=COMPARED):
-    """Bars on stderr; gives ``shown(number, backend, steps done)``, or None where stderr is not a terminal."""
+def bars(totals: list[tuple[str, int]]):
+    """Bars on stderr, one for each (name, total); gives ``shown(number, done, doing)``, or None where stderr is not a
+    terminal."""
     if not sys.stderr.isatty():
         yield None
         return
@@ -20,16 +21,22 @@ def progress(scenes: list[Scene], backends=COMPARED):
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     columns = [TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[doing]:5}"), TimeElapsedColumn()]
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
-        tasks = [bars.add_task(scene.name, total=len(backends) * scene.steps, start=False, doing="")
-                 for scene in scenes]
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        tasks = [progress.add_task(name, total=total, start=False, doing="") for name, total in totals]
 
-        def shown(number: int, backend: str, steps: int) -> None:
-            bars.start_task(tasks[number])
-            before = backends.index(backend) * scenes[number].steps
-            bars.update(tasks[number], completed=before + steps, doing=backend)
+        def shown(number: int, done: int, doing: str = "") -> None:
+            progress.start_task(tasks[number])
+            progress.update(tasks[number], completed=done, doing=doing)
 
         yield shown
+
+
+@contextmanager
+def progress(scenes: list[Scene], backends=COMPARED):
+    """Bars on stderr; gives ``shown(number, backend, steps done)``, or None where stderr is not a terminal."""
+    with bars([(scene.name, len(backends) * scene.steps) for scene in scenes]) as shown:
+        yield shown and (lambda number, backend, steps: shown(
+            number, backends.index(backend) * scenes[number].steps + steps, backend))
 
 
 @contextmanager
