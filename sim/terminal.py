@@ -7,7 +7,6 @@ from contextlib import contextmanager
 
 from golden.problem import Scene
 from sim.compare import power, shortcomings
-from sim.run import COMPARED
 
 
 @contextmanager
@@ -20,7 +19,7 @@ def bars(totals: list[tuple[str, int]]):
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-    columns = [TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[doing]:5}"), TimeElapsedColumn()]
+    columns = [TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[doing]:6}"), TimeElapsedColumn()]
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         tasks = [progress.add_task(name, total=total, start=False, doing="") for name, total in totals]
 
@@ -32,7 +31,7 @@ def bars(totals: list[tuple[str, int]]):
 
 
 @contextmanager
-def progress(scenes: list[Scene], backends=COMPARED):
+def progress(scenes: list[Scene], backends: tuple[str, ...]):
     """Bars on stderr; gives ``shown(number, backend, steps done)``, or None where stderr is not a terminal."""
     with bars([(scene.name, len(backends) * scene.steps) for scene in scenes]) as shown:
         yield shown and (lambda number, backend, steps: shown(
@@ -55,12 +54,13 @@ def print_table(entries: list[dict]) -> None:
     for e in entries:
         rows.append((
             e["scene"], *(str(e[key]) for key in ("dim", "nodes", "edges", "steps")),
-            "yes" if e["rtl_equals_fixed"] else "NO", power(e["max_dx_rel"]), power(e["bound"]), power(e["max_da"]),
+            {True: "yes", False: "NO", None: "-"}[e["rtl_equals_fixed"]],
+            power(e["max_dx_rel"]), power(e["bound"]), power(e["max_da"]),
             str(e["saturations"]), f"{e['seconds']:.0f}", "FAILS" if shortcomings(e) else "passes"))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lanes = entries[0]["lanes"]
-    print(f"circuit with {lanes} lane{'s' * (lanes > 1)} against integer model (rtl=fixed: every bit of every frame), "
-          "integer model\nagainst float64 (max dx: largest position difference / size of the object; "
-          "max da: of a ratio)\n")
+    lanes = sorted({e["lanes"] for e in entries if e["lanes"]})
+    with_lanes = f"circuit with {' or '.join(map(str, lanes))} lane{'s' * (lanes != [1])}" if lanes else "circuit"
+    print(f"{with_lanes} against integer model (rtl=fixed: every bit of every frame), integer model\n"
+          "against float64 (max dx: largest position difference / size of the object; max da: of a ratio)\n")
     for row in rows:
         print("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip())
