@@ -25,12 +25,13 @@ def edge_forces(scene: Scene, run: Trajectory) -> np.ndarray:
 
 def energies(scene: Scene, run: Trajectory) -> dict[str, np.ndarray]:
     """(F,) J each: ``kinetic``, ``elastic`` (of the springs, k (a l - L)^2 / 2) and ``gravity`` (0 at the start) are
-    in the object; ``work`` is what driving devices and loads have put in since the start, ``dissipated`` the rest.
+    in the object; ``work`` is what driving devices and loads have put in since it was at rest, before frame 0 has its
+    driven nodes move; ``dissipated`` is the rest.
 
     The work of a load is exact. That of a device is a sum over the frames (trapezoids): it is as good as the
     force between two frames is straight.
     """
-    model, count = Model(scene), len(run.t)
+    model = Model(scene)
     i, j = model.i, model.j
     stretch = run.a * np.linalg.norm(run.x[:, j] - run.x[:, i], axis=2) - model.L
     result = {
@@ -38,14 +39,14 @@ def energies(scene: Scene, run: Trajectory) -> dict[str, np.ndarray]:
         "elastic": stretch**2 @ model.k / 2,
         "gravity": -((run.x - run.x[0]) @ scene.gravity) @ scene.mass,
     }
-    work = np.zeros(count)
+    work = np.full(len(run.t), result["kinetic"][0])
     for phase, frames in _frames(scene):
         steady = phase.load * (run.x[frames] - run.x[frames[0]])
         gained, power = _begun(model, phase, run, frames)
         pressed = np.diff(run.t[frames]) * (power[1:] + power[:-1]) / 2
         work[frames[1:]] = work[frames[0]] + gained + steady.sum(axis=(1, 2))[1:] + np.cumsum(pressed)
     inside = sum(result.values())
-    return result | {"work": work, "dissipated": work - (inside - inside[0])}
+    return result | {"work": work, "dissipated": work - work[0] - (inside - inside[0])}
 
 
 def _frames(scene: Scene) -> Iterator[tuple[Phase, np.ndarray]]:

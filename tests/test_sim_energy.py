@@ -44,6 +44,16 @@ def test_what_is_missing_has_become_heat(material, dim):
     np.testing.assert_allclose(result["dissipated"], expected, atol=1e-3 * expected[-1])
 
 
+def test_the_device_gives_the_nodes_their_speed():
+    """At rest before frame 0, moving at it; stopped by the device when it only holds, whatever was left in them."""
+    scene = block("plastic", steps=(20, 5, 5), every=1)
+    result, press = energy.energies(scene, run(scene, "float").trajectory), scene.phases[0]
+    moving = (press.velocity[press.driven] ** 2).sum(axis=1) @ scene.mass[press.driven] / 2
+    assert result["work"][0] == result["kinetic"][0] == pytest.approx(moving, rel=1e-12)
+    assert result["dissipated"][0] == 0
+    assert result["work"][21] - result["work"][20] == pytest.approx(-moving, rel=1e-9)
+
+
 @pytest.mark.parametrize("material", LINEAR)
 def test_heat_does_not_come_back(material):
     scene = block(material, steps=(200, 50, 300), every=10)

@@ -3,6 +3,7 @@ import json
 import re
 import shutil
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,12 +11,14 @@ from browser import Opened, chromium
 from report_objects import FLAT, SOLID
 from sim_objects import in_place_of_the_circuit
 
+from golden.scene import load
 from sim import machines, report
-from sim.compare import compare, power
+from sim.compare import compare, completed, power
 from sim.report.page import slug
 
 FLAT_ID, SOLID_ID = slug(FLAT.name), slug(SOLID.name)
-INTERACTIVE = 2.0  # s
+SHIPPED = Path(__file__).parents[1] / "scenes"
+INTERACTIVE, LARGEST = 2.0, 15e6  # s, bytes
 RATIO, FORCE, APART = (f"[data-role=colour][value={value}]" for value in ("ratio", "force", "apart"))
 
 
@@ -52,8 +55,8 @@ def test_without_a_browser_tests_are_skipped_but_not_in_continuous_integration(m
     monkeypatch.delenv("CI", raising=False)
     if ci:
         monkeypatch.setenv("CI", ci)
-    message = "a browser (chromium) is missing, with which the report is tested: install it (Debian: apt install chromium)"
-    with pytest.raises(outcome, match=f"^{re.escape(message)}$"), chromium():
+    message = "a browser (chromium) is missing, with which the report is tested: install it (Debian: apt install "
+    with pytest.raises(outcome, match=f"^{re.escape(message)}chromium\\)$"), chromium():
         pass
 
 
@@ -72,6 +75,22 @@ def test_it_is_interactive_soon(browser, folder):
     shown.page.keyboard.press("Tab")
     assert shown.page.evaluate("document.activeElement.tagName") == "A"
     assert time.perf_counter() - began < INTERACTIVE
+    shown.page.close()
+
+
+@pytest.mark.campaign
+def test_all_shipped_scenes_are_interactive_soon_and_not_large(browser, tmp_path):
+    scenes = [load(path) for path in sorted(SHIPPED.glob("*.toml"))]
+    assert len(scenes) >= 10
+    report.write([report.Section.of(completed(scene, {}, ("float", "fixed"))) for scene in scenes], tmp_path)
+    size = (tmp_path / "index.html").stat().st_size
+    began = time.perf_counter()
+    shown = Opened(browser, tmp_path / "index.html")
+    taken = time.perf_counter() - began
+    print(f"{len(scenes)} scenes: {size / 1e6:.1f} MB, interactive after {taken:.2f} s")
+    for scene in scenes:
+        shown.section(slug(scene.name))
+    assert size <= LARGEST and taken < INTERACTIVE and shown.complaints == []
     shown.page.close()
 
 
@@ -126,7 +145,7 @@ def test_a_curve_that_is_pressed_moves_the_picture(opened):
     section = opened.section(SOLID_ID)
     chart = section.locator("[data-chart=force] svg")
     box = chart.bounding_box()
-    chart.click(position={"x": box["width"] - 11, "y": 60})
+    chart.click(position={"x": box["width"] - 19, "y": 60})
     assert opened.frame(SOLID_ID) == 35
     chart.click(position={"x": 53, "y": 60})
     assert opened.frame(SOLID_ID) == 0

@@ -1,7 +1,7 @@
 // Curves over time, with a line where the picture is: press or drag to go elsewhere.
 
 const SVG = "http://www.w3.org/2000/svg";
-const FRAME = { left: 52, right: 10, top: 18, bottom: 34, height: 240 };
+const FRAME = { left: 52, right: 18, top: 18, bottom: 34, height: 240 };
 
 function drawn(parent, name, attributes, text) {
   const element = document.createElementNS(SVG, name);

@@ -19,6 +19,12 @@ function si(value, unit, largest = value) {
   return `${number(Math.abs(scaled) < 1e-9 ? 0 : Number(scaled.toPrecision(3)))}\u00a0${prefix}${unit}`;
 }
 
+// The next smaller one of 1, 2, 5, 10, 20 ...
+function roundBelow(value) {
+  const decade = 10 ** Math.floor(Math.log10(value));
+  return decade * [5, 2, 1].find((digit) => digit * decade <= value);
+}
+
 class Recording {
   constructor(packed) {
     Object.assign(this, packed);
@@ -35,9 +41,8 @@ class Recording {
       for (const run of ["float64", "circuit"])
         this.levels[`${what} ${run}`] = unpacked(packed[what][run].data, Uint8Array);
     this.faceEdges = this.edgesOfFaces();
-    // so many times a difference may be drawn, in powers of ten, until it is a twentieth of the object
-    this.magnified = this.largest_apart
-      ? 10 ** Math.max(0, Math.floor(Math.log10(this.size / 20 / this.largest_apart))) : 1;
+    // so many times larger a difference may be drawn: the largest is then up to a tenth of the object
+    this.magnified = this.largest_apart ? Math.max(1, roundBelow(this.size / 10 / this.largest_apart)) : 1;
   }
 
   edgesOfFaces() {

@@ -62,7 +62,7 @@ function paintFaces(context, recording, points, circuit, both, shades, scale, th
     if (recording.dim3 && normal[2] >= 0) continue; // looks away: y points down on a canvas
     const length = Math.hypot(...normal) || 1;
     const lit = Math.max(0, (0.25 * normal[0] + 0.75 * normal[1] - 0.61 * normal[2]) / length);
-    order.push([points[a + 2] + points[b + 2] + points[c + 2], f, recording.dim3 ? 0.68 + 0.32 * lit : 1]);
+    order.push([points[a + 2] + points[b + 2] + points[c + 2], f, recording.dim3 ? 0.8 + 0.2 * lit : 1]);
   }
   order.sort((one, other) => one[0] - other[0]);
   const sides = [0, 1, 2];
@@ -83,7 +83,7 @@ function paintFaces(context, recording, points, circuit, both, shades, scale, th
         if (pass.includes("float64")) path(context, points, p, q), stroke(context, theme.wide, 4);
         if (pass.includes("own")) {
           path(context, points, p, q);
-          if (pale) stroke(context, scale.rgb(own[side], 0.4 + 0.6 * light), theme.plain ? 1.2 : 2.4);
+          if (pale) stroke(context, scale.rgb(own[side], 0.5 + 0.5 * light), theme.plain ? 1.2 : 2.4);
           else stroke(context, theme.line, 0.8);
         }
       }
@@ -138,8 +138,7 @@ function paintHeld(context, recording, shown, points, theme) {
 }
 
 function paintRuler(context, camera, theme) {
-  const most = 0.28 * theme.width / camera.scale, decade = 10 ** Math.floor(Math.log10(most));
-  const length = decade * [5, 2, 1].find((digit) => digit * decade <= most);
+  const length = roundBelow(0.28 * theme.width / camera.scale);
   const [x, y] = [18, theme.height - 16];
   context.beginPath();
   for (const [dx, dy] of [[0, -5], [0, 0], [length * camera.scale, 0], [length * camera.scale, -5]]) context.lineTo(x + dx, y + dy);

@@ -143,6 +143,7 @@ class Viewer {
     const { recording, shown } = this, both = shown.run === "both";
     this.control("scale").hidden = both;
     this.control("lines").hidden = !both;
+    this.control("colours").disabled = both;
     const { low, high } = recording.ratio.circuit, full = recording.force.circuit.high;
     const apart = recording.largest_apart;
     const [title, low_, middle, high_] = {
@@ -167,5 +168,5 @@ function theme(width, height, plain = false) {
   const dark = matchMedia("(prefers-color-scheme: dark)").matches;
   return { width, height, plain, line: dark ? "#ffffff50" : "#00000050", ink: colour("ink"), quiet: colour("quiet"), under: colour("under"), wide: colour("wide"),
            circuit: colour("circuit"), bound: colour("bound"),
-           paper: (light) => (dark ? `hsl(40 20% ${Math.round(26 * light)}%)` : `hsl(43 100% ${Math.round(91 * light)}%)`) };
+           paper: (light) => (dark ? `hsl(40 20% ${Math.round(28 * light)}%)` : `hsl(43 70% ${Math.round(94 * light)}%)`) };
 }
