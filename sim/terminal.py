@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from golden.problem import Scene
 from sim.compare import power, shortcomings
+from sim.run import COMPARED
 
 
 @contextmanager
@@ -19,7 +20,7 @@ def bars(totals: list[tuple[str, int]]):
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-    columns = [TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[doing]:6}"), TimeElapsedColumn()]
+    columns = [TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[doing]:5}"), TimeElapsedColumn()]
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         tasks = [progress.add_task(name, total=total, start=False, doing="") for name, total in totals]
 
@@ -31,7 +32,7 @@ def bars(totals: list[tuple[str, int]]):
 
 
 @contextmanager
-def progress(scenes: list[Scene], backends: tuple[str, ...]):
+def progress(scenes: list[Scene], backends=COMPARED):
     """Bars on stderr; gives ``shown(number, backend, steps done)``, or None where stderr is not a terminal."""
     with bars([(scene.name, len(backends) * scene.steps) for scene in scenes]) as shown:
         yield shown and (lambda number, backend, steps: shown(

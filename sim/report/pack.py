@@ -15,7 +15,7 @@ from sim.report.surface import outline, surface
 
 BUDGET = 800_000  # bytes of a scene's frames before base64 makes them a third longer
 MOST = 240  # frames
-COLOURED = 0.995  # of the forces have a colour of their own; blows beyond have that of the scale's end
+COLOURED = 0.995  # part of the forces, or of the ratios from each end, that is not beyond the end of its colour scale
 DIGITS = 6  # of a number in a curve
 
 
@@ -77,9 +77,9 @@ def curves(comparison: Comparison) -> dict:
 
 
 def ratio_limits(ratios: list[np.ndarray]) -> tuple[float, float]:
-    """Ends of a scale of ratios: hundredths around all of them, and no less than a tenth apart."""
-    low = np.floor(min(ratio.min() for ratio in ratios) * 100) / 100
-    high = np.ceil(max(ratio.max() for ratio in ratios) * 100) / 100
+    """Ends of a scale of ratios: hundredths around most of them, and no less than a tenth apart."""
+    low, high = np.quantile(np.concatenate([ratio.ravel() for ratio in ratios]), (1 - COLOURED, COLOURED))
+    low, high = np.floor(low * 100) / 100, np.ceil(high * 100) / 100
     if high - low < 0.1:
         middle = np.clip(round((low + high) / 2, 2), 0.05, 0.95)
         low, high = middle - 0.05, middle + 0.05

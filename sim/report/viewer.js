@@ -147,7 +147,7 @@ class Viewer {
     const { low, high } = recording.ratio.circuit, full = recording.force.circuit.high;
     const apart = recording.largest_apart;
     const [title, low_, middle, high_] = {
-      ratio: ["ratio a of the edges", low.toFixed(2), ((low + high) / 2).toFixed(2), high.toFixed(2)],
+      ratio: ["ratio a of the edges; beyond the ends the same colour", low.toFixed(2), ((low + high) / 2).toFixed(2), high.toFixed(2)],
       force: ["force of the edges: below 0 they pull, above they push; beyond the ends the same colour",
               si(-full, "N"), "0", si(full, "N")],
       apart: [`how far circuit and float64 are apart; ${si(apart, "m")} are ${power(apart / recording.size)} of the size`,
