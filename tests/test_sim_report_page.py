@@ -189,7 +189,7 @@ def test_a_flat_object_does_not_turn(opened):
 def test_colours_runs_and_enlarged_differences_are_all_different_pictures(opened):
     section = opened.section(SOLID_ID)
     seen = {}
-    for colour, words in ((RATIO, "ratio a"), (FORCE, "force of the edges"), (APART, "how far circuit and float64")):
+    for colour, words in ((RATIO, "ratio a"), (FORCE, "force of the edges"), (APART, "distance of circuit")):
         section.locator(colour).check()
         seen[colour] = opened.pixels(SOLID_ID)
         assert section.locator("[data-role=title]").text_content().startswith(words)

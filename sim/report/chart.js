@@ -47,8 +47,13 @@ class Chart {
     return Math.max(0, Math.min(1, part)) * this.t[this.t.length - 1];
   }
 
+  // Whether a value has a place on the axis.
+  there(value) {
+    return value !== null && (!this.log || value > 0);
+  }
+
   limits() {
-    const known = this.series.flatMap(({ values }) => values).filter((value) => value !== null && (!this.log || value > 0));
+    const known = this.series.flatMap(({ values }) => values.filter((value) => this.there(value)));
     const all = [...known, ...this.lines.map(({ value }) => value)];
     if (this.log) { // nothing is of interest far below the lowest line
       const lowest = Math.max(Math.min(...all), Math.min(...this.lines.map(({ value }) => value)) / 5);
@@ -68,7 +73,8 @@ class Chart {
     this.y = (value) => height - bottom
       - Math.max(0, (this.log ? Math.log10(value) : value) - low) / (high - low) * (height - top - bottom);
     const [prefix, factor] = this.log ? ["", 1] : prefixFor(Math.max(Math.abs(low), Math.abs(high)));
-    const marks = this.log ? Array.from({ length: high - low + 1 }, (_, n) => low + n).filter((n) => (high - low < 6 || n % 2 === 0))
+    const decades = Array.from({ length: high - low + 1 }, (_, n) => low + n);
+    const marks = this.log ? decades.filter((n) => high - low < 6 || n % 2 === 0)
       : ticks(low / factor, high / factor, 4);
     for (const mark of marks) {
       const y = this.y(this.log ? 10 ** mark : mark * factor);
@@ -86,12 +92,13 @@ class Chart {
     for (const { name, end } of this.phases) {
       drawn(svg, "line", { class: "phase", x1: this.x(start), x2: this.x(start), y1: top, y2: height - bottom });
       if (this.x(end) - this.x(start) > 7 * name.length)
-        drawn(svg, "text", { class: "tick", x: (this.x(start) + this.x(end)) / 2, y: 11, "text-anchor": "middle" }, name);
+        drawn(svg, "text", { class: "tick", x: this.x((start + end) / 2), y: 11, "text-anchor": "middle" }, name);
       start = end;
     }
     for (const { value, text, kind } of this.lines) {
-      drawn(svg, "line", { class: `across ${kind}`, x1: left, x2: width - right, y1: this.y(value), y2: this.y(value) });
-      drawn(svg, "text", { class: `tick ${kind}`, x: width - right, y: this.y(value) - 4, "text-anchor": "end" }, text);
+      const y = this.y(value);
+      drawn(svg, "line", { class: `across ${kind}`, x1: left, x2: width - right, y1: y, y2: y });
+      drawn(svg, "text", { class: `tick ${kind}`, x: width - right, y: y - 4, "text-anchor": "end" }, text);
     }
     for (const { values, kind } of this.series) drawn(svg, "path", { class: `curve ${kind}`, d: this.outline(values) });
     this.cursor = drawn(svg, "line", { class: "now", y1: top, y2: height - bottom });
@@ -101,7 +108,7 @@ class Chart {
   outline(values) {
     let result = "", on = false;
     values.forEach((value, n) => {
-      const there = value !== null && (!this.log || value > 0);
+      const there = this.there(value);
       if (there) result += `${on ? "L" : "M"}${this.x(this.t[n]).toFixed(1)} ${this.y(value).toFixed(1)}`;
       on = there;
     });

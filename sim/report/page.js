@@ -19,7 +19,8 @@ function begin(section) {
                    seek: (time) => (viewer.pause(), viewer.show({ frame: recording.nearest(time) })) };
   const two = (values) => [{ name: "float64", kind: "float64", values: values.float64 },
                            { name: "circuit", kind: "circuit", values: values.circuit }];
-  const energies = ["kinetic", "elastic", "gravity", "dissipated", "work"].filter((name) => curves.energy[name].some((value) => value));
+  const energies = ["kinetic", "elastic", "gravity", "dissipated", "work"]
+    .filter((name) => curves.energy[name].some((value) => value));
   const charts = {
     apart: { unit: "", log: true, series: [{ name: "largest, over the nodes", kind: "circuit", values: curves.dx_rel }],
              lines: [{ value: curves.bound, text: `allowed: ${power(curves.bound)}`, kind: "bound" },
@@ -48,7 +49,8 @@ function paintCard(card) {
   [canvas.width, canvas.height] = [width * dense, height * dense];
   context.setTransform(dense, 0, 0, dense, 0, 0);
   const recording = recordingOf(document.getElementById(card.hash.slice(1)));
-  paint(context, recording, new Camera(recording), { ...firstShown(recording), plain: true }, scales, theme(width, height, true));
+  const shown = { ...firstShown(recording), plain: true };
+  paint(context, recording, new Camera(recording), shown, scales, theme(width, height, true));
 }
 const idle = window.requestIdleCallback || ((work) => setTimeout(work, 1));
 function paintCards(rest) {

@@ -43,7 +43,7 @@ function paint(context, recording, camera, shown, scales, theme) {
 
 function path(context, points, ...nodes) {
   context.beginPath();
-  nodes.forEach((node, n) => (n ? context.lineTo : context.moveTo).call(context, points[3 * node], points[3 * node + 1]));
+  for (const node of nodes) context.lineTo(points[3 * node], points[3 * node + 1]);
 }
 
 function stroke(context, colour, width) {
@@ -66,7 +66,8 @@ function paintFaces(context, recording, points, circuit, both, shades, scale, th
   }
   order.sort((one, other) => one[0] - other[0]);
   const sides = [0, 1, 2];
-  const passes = both && !recording.dim3 ? ["fill", "float64", "circuit"] : [both ? "fill float64 circuit" : "fill own"];
+  // of both runs the second lies upon the first; a solid's faces hide what is behind them, of both
+  const passes = !both ? ["fill own"] : recording.dim3 ? ["fill float64 circuit"] : ["fill", "float64", "circuit"];
   for (const pass of passes)
     for (const [, f, light] of order) {
       const [a, b, c] = [faces[f], faces[f + 1], faces[f + 2]];
@@ -97,14 +98,19 @@ function paintFaces(context, recording, points, circuit, both, shades, scale, th
 
 function paintEdges(context, recording, points, circuit, both, shades, scale, theme) {
   const edges = recording.edges, order = [];
-  for (let e = 0; e < recording.edgeCount; e++) order.push([points[3 * edges[2 * e] + 2] + points[3 * edges[2 * e + 1] + 2], e]);
+  for (let e = 0; e < recording.edgeCount; e++)
+    order.push([points[3 * edges[2 * e] + 2] + points[3 * edges[2 * e + 1] + 2], e]);
   order.sort((one, other) => one[0] - other[0]);
   for (const [, e] of order) {
     path(context, points, edges[2 * e], edges[2 * e + 1]);
     stroke(context, both ? theme.wide : theme.under, both ? 4 : 3.4);
     if (!both) stroke(context, scale.rgb(shades[e]), 2.4);
   }
-  if (both) for (const [, e] of order) path(context, circuit, edges[2 * e], edges[2 * e + 1]), stroke(context, theme.circuit, 1.4);
+  if (!both) return;
+  for (const [, e] of order) {
+    path(context, circuit, edges[2 * e], edges[2 * e + 1]);
+    stroke(context, theme.circuit, 1.4);
+  }
 }
 
 function paintOutline(context, recording, camera, theme) {
@@ -141,7 +147,8 @@ function paintRuler(context, camera, theme) {
   const length = roundBelow(0.28 * theme.width / camera.scale);
   const [x, y] = [18, theme.height - 16];
   context.beginPath();
-  for (const [dx, dy] of [[0, -5], [0, 0], [length * camera.scale, 0], [length * camera.scale, -5]]) context.lineTo(x + dx, y + dy);
+  const long = length * camera.scale;
+  for (const [dx, dy] of [[0, -5], [0, 0], [long, 0], [long, -5]]) context.lineTo(x + dx, y + dy);
   stroke(context, theme.ink, 1.4);
   context.fillStyle = theme.ink;
   context.font = "12px system-ui, sans-serif";

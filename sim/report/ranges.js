@@ -13,8 +13,9 @@ function drawRanges(section, ranges) {
     const most = Math.log(1 + Math.max(...counts)), height = (count) => (HIGH - 4) * Math.log(1 + count) / most;
     const top = counts.reduce((last, count, n) => (count ? n : last), 0);
     drawn(svg, "rect", { class: "format", x: right(usable), y: 1, width: usable * CELL, height: HIGH - 2 });
-    if (!normalised && usable > top)
-      drawn(svg, "rect", { class: "headroom", x: right(usable - top), y: 1, width: (usable - top) * CELL, height: HIGH - 2 });
+    const free = usable - top;
+    if (!normalised && free)
+      drawn(svg, "rect", { class: "headroom", x: right(free), y: 1, width: free * CELL, height: HIGH - 2 });
     counts.forEach((count, n) => {
       if (!count) return;
       const x = n ? right(usable - n + 1) : 0;

@@ -146,16 +146,16 @@ class Viewer {
     this.control("colours").disabled = both;
     const { low, high } = recording.ratio.circuit, full = recording.force.circuit.high;
     const apart = recording.largest_apart;
-    const [title, low_, middle, high_] = {
-      ratio: ["ratio a of the edges; beyond the ends the same colour", low.toFixed(2), ((low + high) / 2).toFixed(2), high.toFixed(2)],
+    const named = {
+      ratio: ["ratio a of the edges; beyond the ends the same colour",
+              ...[low, (low + high) / 2, high].map((ratio) => ratio.toFixed(2))],
       force: ["force of the edges: below 0 they pull, above they push; beyond the ends the same colour",
               si(-full, "N"), "0", si(full, "N")],
-      apart: [`how far circuit and float64 are apart; ${si(apart, "m")} are ${power(apart / recording.size)} of the size`,
+      apart: [`distance of circuit and float64; ${si(apart, "m")} are ${power(apart / recording.size)} of the size`,
               "0", si(apart / 2, "m", apart), si(apart, "m")],
     }[shown.colour];
-    this.control("title").textContent = title;
     this.control("bar").style.background = `linear-gradient(to right, ${this.scales[shown.colour].colours.join(", ")})`;
-    for (const [role, text] of [["low", low_], ["middle", middle], ["high", high_]]) this.control(role).textContent = text;
+    ["title", "low", "middle", "high"].forEach((role, n) => { this.control(role).textContent = named[n]; });
   }
 }
 
@@ -163,10 +163,12 @@ function power(x) {
   return x === 0 ? "0" : x.toExponential(1).replace(".0e", "e").replace("e+", "e");
 }
 
+// What a picture of this size takes from the page's style.
 function theme(width, height, plain = false) {
-  const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(`--${name}`).trim();
-  const dark = matchMedia("(prefers-color-scheme: dark)").matches;
-  return { width, height, plain, line: dark ? "#ffffff50" : "#00000050", ink: colour("ink"), quiet: colour("quiet"), under: colour("under"), wide: colour("wide"),
-           circuit: colour("circuit"), bound: colour("bound"),
-           paper: (light) => (dark ? `hsl(40 20% ${Math.round(28 * light)}%)` : `hsl(43 70% ${Math.round(94 * light)}%)`) };
+  const style = getComputedStyle(document.documentElement), result = { width, height, plain };
+  for (const name of ["ink", "quiet", "under", "line", "wide", "circuit", "bound"])
+    result[name] = style.getPropertyValue(`--${name}`).trim();
+  const [hue, most] = ["paper", "paper-light"].map((name) => style.getPropertyValue(`--${name}`).trim());
+  result.paper = (light) => `hsl(${hue} ${Math.round(most * light)}%)`;
+  return result;
 }
