@@ -96,6 +96,7 @@ def test_the_figures_can_be_read(page, entries):
             assert brief(entry[key]) in page.text
         assert percent(entry["occupancy"]) in page.text
         assert si(entry["energy"]["dissipated"], "J") in page.text
+    assert page.text.count("energy of its weight") == 1  # of the one that stands under it
     assert page.text.count("passes") == 2 * len(SCENES) and "not timed" in page.text
 
 
@@ -198,7 +199,7 @@ def test_brief(value, text):
 
 
 @pytest.mark.parametrize("value, unit, text", [
-    (0.01234, "N", "12.3 mN"), (-2e-7, "m", "-200 nm"), (1.0, "J", "1 J"), (0.0, "J", "0 J"), (0.75, "", "0.75")])
+    (0.01234, "N", "12.3 mN"), (-2e-7, "m", "−200 nm"), (1.0, "J", "1 J"), (0.0, "J", "0 J"), (0.75, "", "0.75")])
 def test_si(value, unit, text):
     assert si(value, unit) == text
 

@@ -56,7 +56,8 @@ const idle = window.requestIdleCallback || ((work) => setTimeout(work, 1));
 function paintCards(rest) {
   if (rest.length) idle(() => (paintCard(rest[0]), paintCards(rest.slice(1))));
 }
-paintCards(cards);
+// after the scenes that can be seen
+requestAnimationFrame(() => requestAnimationFrame(() => paintCards(cards)));
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => paintCards(cards));
 
 const near = new IntersectionObserver((entries) => {

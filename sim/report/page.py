@@ -109,7 +109,7 @@ def si(value: float, unit: str) -> str:
         return f"{value:.3g}"
     for prefix, factor in (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12)):
         if abs(value) >= factor:
-            return f"{value / factor:.3g} {prefix}{unit}"
+            return f"{value / factor:.3g} {prefix}{unit}".replace("-", "−")
     return f"0 {unit}"
 
 
