@@ -199,7 +199,8 @@ def test_brief(value, text):
 
 
 @pytest.mark.parametrize("value, unit, text", [
-    (0.01234, "N", "12.3 mN"), (-2e-7, "m", "−200 nm"), (1.0, "J", "1 J"), (0.0, "J", "0 J"), (0.75, "", "0.75")])
+    (0.01234, "N", "12.3 mN"), (-2e-7, "m", "−200 nm"), (1.0, "J", "1 J"), (0.0, "J", "0 J"), (0.75, "", "0.75"),
+    (0.99996, "N", "1000 mN"), (54321.0, "N", "54300 N")])
 def test_si(value, unit, text):
     assert si(value, unit) == text
 

@@ -106,10 +106,10 @@ def percent(part: float) -> str:
 def si(value: float, unit: str) -> str:
     """A quantity with its unit's prefix: 0.0123 N is 12.3 mN. A number has none."""
     if not unit:
-        return f"{value:.3g}"
+        return f"{float(f'{value:.3g}'):g}"
     for prefix, factor in (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12)):
         if abs(value) >= factor:
-            return f"{value / factor:.3g} {prefix}{unit}".replace("-", "−")
+            return f"{float(f'{value / factor:.3g}'):g} {prefix}{unit}".replace("-", "−")
     return f"0 {unit}"
 
 
