@@ -23,6 +23,8 @@ OLDEST = (3, 11)
 VERSION = "{}.{}".format(*sys.version_info)
 # program -> (what it is, Debian's package)
 PROGRAMS = {"c++": ("a C++ compiler (c++)", "g++"), "make": ("make", "make"), "perl": ("perl", "perl")}
+# what only the tests of the report's page need: they are skipped without it
+BROWSER = {"chromium": ("a browser (chromium)", "chromium")}
 
 
 def libpython():
@@ -49,6 +51,11 @@ def checked():
         ("Python's venv module", f"python{VERSION}-venv", venv),
         (f"the shared library of Python {VERSION}", f"libpython{VERSION}", libpython()),
     ]
+
+
+def browser():
+    """As `checked`, of what only some tests need."""
+    return [(what, package, bool(shutil.which(program))) for program, (what, package) in BROWSER.items()]
 
 
 def missing():

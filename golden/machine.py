@@ -1,6 +1,7 @@
 """A whole step in integers: what the circuit computes, bit for bit, on NumPy arrays."""
 
 from collections import Counter
+from collections.abc import Callable
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,6 +19,12 @@ from .tables import Tables
 class Machine:
     """The bit-exact model of the circuit, loaded with an `Image`.
 
+    Parameters
+    ----------
+    watch : callable, optional
+        Called in each stage with the quantities of `golden.edge.edge`, then with those of `golden.node.node`: looking
+        at them changes no bit.
+
     Attributes
     ----------
     x, v : (N, 3) int64
@@ -29,8 +36,8 @@ class Machine:
         How often each quantity saturated (or an edge became too short), by name.
     """
 
-    def __init__(self, image: Image):
-        self.image, self.faults = image, Counter()
+    def __init__(self, image: Image, watch: Callable[[dict], object] | None = None):
+        self.image, self.faults, self._watch = image, Counter(), watch
         self._fmt = image.formats
         self._tables = Tables(self._fmt, image.inverse, image.damper)
         self._stages = [
@@ -91,6 +98,9 @@ class Machine:
             pulls = [self._number(accumulate(len(self.x), ends, pull.raw), fmt.accumulator) for pull in e["pull"]]
             state = SimpleNamespace(x_base=x_base, v_base=v_base, v=v, x_total=x_total, v_total=v_total)
             n = node(fmt, stage, self._shift, [pulls], self._load, self._inverse_mass, state)
+            if self._watch:
+                self._watch(e)
+                self._watch(n)
             x, v, x_base, v_base = n["x"], n["v"], n["x_base_next"], n["v_base_next"]
             x_total, v_total = n["x_total"], n["v_total"]
         self.x, self.v, self.force = (np.stack([c.raw for c in vector], 1) for vector in (x, v, n["force"]))

@@ -56,6 +56,9 @@ def system() -> Iterator[Finding]:
     yield _finding("Python", environment.VERSION, "")  # an old one has been refused before
     for what, package, there in environment.checked():
         yield _finding(what, "there" if there else None, environment.install_it(package))
+    for what, package, there in environment.browser():
+        do = f"for the tests of the report: {environment.install_it(package)}"
+        yield _finding(what, "there" if there else None, do, needed=False)
 
 
 def packages() -> Iterator[Finding]:

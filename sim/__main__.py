@@ -56,6 +56,13 @@ def parser() -> Parser:
     kept.add_argument("--out", metavar="DIR", help="folder to write to (RUN/vtu)")
     kept.set_defaults(run=export)
 
+    page = commands.add_parser("report", help="the page of runs that there are already")
+    page.add_argument("runs", nargs="+", metavar="RUN",
+                      help="folders of `run`: those of the same scene go together; float64, if it isn't there, is run")
+    page.add_argument("--out", default="build/report", metavar="DIR",
+                      help="folder for compare.json and index.html (build/report)")
+    page.set_defaults(run=report)
+
     board = commands.add_parser("serve", help="the simulated circuit behind its serial link, on a loopback socket")
     board.add_argument("--port", type=port_number, default=0, metavar="PORT", help="of this machine (one that is free)")
     board.set_defaults(run=serve)
@@ -73,7 +80,7 @@ def parser() -> Parser:
                              help=f"edge processors of the circuit ({only}{LANES})")
         command.add_argument("--updates", type=whole, metavar="M",
                              help=f"nodes that the circuit updates in a cycle, 1 or 2 ({only}{UPDATES})")
-    for command in (one, many, drawn, kept):
+    for command in (one, many, page, drawn, kept):
         command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
     return main
 
@@ -139,7 +146,7 @@ def _circuit(args):
 
 def compare(args) -> int:
     from sim import batch, folder, limits, report, terminal
-    from sim.compare import shortcomings
+    from sim.compare import STAGES
 
     parameters, wanted = _circuit(args)
     loaded = [scenes.load(path) for path in args.scenes]
@@ -150,8 +157,28 @@ def compare(args) -> int:
         with about(scene):
             machines.check_room(limits.load(scene).image, parameters)
     out = folder.claim(args.out, args.force)
-    with terminal.progress(loaded) as shown:
-        sections = batch.over_scenes(partial(report.section, **wanted, folder=out), loaded, shown)
+    with terminal.progress(loaded, STAGES) as shown:
+        sections = batch.over_scenes(partial(report.section, **wanted), loaded, shown)
+    return _reported(sections, out)
+
+
+def report(args) -> int:
+    from sim import batch, folder, report, stored, terminal
+    from sim.compare import STAGES
+
+    groups = stored.grouped(args.runs)
+    out = folder.claim(args.out, args.force)
+    loaded, folders = [scene for scene, _ in groups], {scene.name: runs for scene, runs in groups}
+    with terminal.progress(loaded, (STAGES[0], STAGES[-1])) as shown:
+        sections = batch.over_scenes(partial(report.of_runs, folders=folders), loaded, shown)
+    return _reported(sections, out)
+
+
+def _reported(sections, out: Path) -> int:
+    """Write the page and print its table. 1 if a scene does not pass, and why."""
+    from sim import report, terminal
+    from sim.compare import shortcomings
+
     entries = [section.entry for section in sections]
     report.write(sections, out)
     terminal.print_table(entries)

@@ -65,12 +65,13 @@ def print_table(entries: list[dict]) -> None:
     for e in entries:
         rows.append((
             e["scene"], *(str(e[key]) for key in ("dim", "nodes", "edges", "steps")),
-            "yes" if e["rtl_equals_fixed"] else "NO", power(e["max_dx_rel"]), power(e["bound"]), power(e["max_da"]),
+            {True: "yes", False: "NO", None: "-"}[e["rtl_equals_fixed"]],
+            power(e["max_dx_rel"]), power(e["bound"]), power(e["max_da"]),
             str(e["saturations"]), f"{e['seconds']:.0f}", "FAILS" if shortcomings(e) else "passes"))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lanes = entries[0]["lanes"]
-    print(f"circuit with {lanes} lane{'s' * (lanes > 1)} against integer model (rtl=fixed: every bit of every frame), "
-          "integer model\nagainst float64 (max dx: largest position difference / size of the object; "
-          "max da: of a ratio)\n")
+    lanes = sorted({e["lanes"] for e in entries if e["lanes"]})
+    with_lanes = f"circuit with {' or '.join(map(str, lanes))} lane{'s' * (lanes != [1])}" if lanes else "circuit"
+    print(f"{with_lanes} against integer model (rtl=fixed: every bit of every frame), integer model\n"
+          "against float64 (max dx: largest position difference / size of the object; max da: of a ratio)\n")
     for row in rows:
         print("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip())

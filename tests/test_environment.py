@@ -48,6 +48,12 @@ def test_names_all_that_is_missing(lacking):
     assert len(environment.missing()) == 2
 
 
+def test_a_browser_is_looked_for_but_nothing_waits_for_it(lacking):
+    lacking("chromium")
+    assert environment.browser() == [("a browser (chromium)", "chromium", False)]
+    assert environment.missing() == []
+
+
 def test_old_python(monkeypatch):
     monkeypatch.setattr(environment, "OLDEST", (3, 99))
     assert environment.missing() == [f"python3 must be Python 3.99 or newer, not {VERSION}: install one, "

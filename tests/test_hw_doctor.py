@@ -17,6 +17,7 @@ from hw.__main__ import main
 def machine(monkeypatch):
     """A machine with everything that make needs, a loader, and no serial port."""
     monkeypatch.setattr(environment, "checked", lambda: [("perl", "perl", True)])
+    monkeypatch.setattr(environment, "browser", lambda: [("a browser", "browser", True)])
     monkeypatch.setattr(flash, "found", lambda: ("/bin/loader", "v1.1.1"))
     monkeypatch.setattr(list_ports, "comports", list)
 
@@ -88,6 +89,13 @@ def test_without_loader_and_board_make_works(machine, capsys, monkeypatch):
     assert code == 0
     assert f"--   openFPGALoader  missing  for `make flash`: {flash.INSTALL}" in out
     assert "--   serial port  missing  to run on a board: connect it" in out
+
+
+def test_a_browser_is_needed_by_some_tests_alone(machine, capsys, monkeypatch):
+    monkeypatch.setattr(environment, "browser", lambda: [("a browser", "browser", False)])
+    code, out = lines(capsys)
+    assert code == 0
+    assert "--   a browser  missing  for the tests of the report: install it (Debian: apt install browser)" in out
 
 
 def test_serial_ports_and_whether_they_may_be_used(machine, capsys, monkeypatch, tmp_path):

@@ -110,8 +110,7 @@ def test_compare(circuit, scene, tmp_path, capsys, monkeypatch):
     assert main(["compare", scene, str(second), "--lanes", "3", "--updates", "2", "--out", str(out)]) == 0
     entries = json.loads((out / "compare.json").read_text())
     assert [(e["scene"], e["lanes"], e["updates"]) for e in entries] == [("block", 3, 2), ("other", 3, 2)]
-    assert {path.name for path in out.iterdir()} == {MARK, "compare.json", "index.html"} | {
-        f"{name}-{kind}.png" for name in ("block", "other") for kind in ("shapes", "curves")}
+    assert {path.name for path in out.iterdir()} == {MARK, "compare.json", "index.html"}
     said, err = lines(capsys)
     assert err == [] and "circuit with 3 lanes" in said[0]
     rows = [line.split() for line in said if line.startswith(("block", "other"))]
@@ -119,6 +118,51 @@ def test_compare(circuit, scene, tmp_path, capsys, monkeypatch):
         assert row[:6] == [entry["scene"], "2", "9", "16", "70", "yes"] and row[-1] == "passes"
         assert row[6:10] == [power(entry["max_dx_rel"]), "1e-5", power(entry["max_da"]), "0"]
     assert max(map(len, said)) <= 105 and len(said) <= 12
+
+
+def test_report(circuit, scene, tmp_path, capsys, monkeypatch):
+    """The page of runs that are there is that of a comparison, but for how long it took."""
+    monkeypatch.setattr(batch, "cores", lambda: 1)
+    runs, pages = [], {}
+    for backend in ("fixed", "rtl"):
+        runs.append(str(tmp_path / backend))
+        assert main(["run", scene, "--backend", backend, "--out", runs[-1]]) == 0
+    for command in (["report", *runs], ["compare", scene]):
+        out = tmp_path / command[0]
+        capsys.readouterr()
+        assert main([*command, "--out", str(out)]) == 0
+        said, err = lines(capsys)
+        assert err == [] and said[4].split()[:6] == ["block", "2", "9", "16", "70", "yes"]
+        assert {path.name for path in out.iterdir()} == {MARK, "compare.json", "index.html"}
+        (entry,) = json.loads((out / "compare.json").read_text())
+        entry.pop("seconds")
+        pages[command[0]] = entry | {"backends": sorted(entry["backends"])}
+    assert pages["report"] == pages["compare"]
+
+
+def test_a_report_of_integers_alone(scene, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(batch, "cores", lambda: 1)
+    assert main(["run", scene, "--backend", "fixed", "--out", str(tmp_path / "run")]) == 0
+    assert main(["report", str(tmp_path / "run"), "--out", str(tmp_path / "page")]) == 0
+    said, err = lines(capsys)
+    assert err == [] and said[1].startswith("circuit against integer model")
+    assert said[-1].split()[5] == "-" and said[-1].split()[-1] == "passes"
+
+
+def test_a_run_that_saturated_fails_in_the_report_too(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(batch, "cores", lambda: 1)
+    main(["run", str(written(tmp_path, HARD)), "--backend", "fixed", "--out", str(tmp_path / "run")])
+    capsys.readouterr()
+    assert main(["report", str(tmp_path / "run"), "--out", str(tmp_path / "page")]) == 1
+    _, err = lines(capsys)
+    assert any(line.startswith("error: block: saturated: ") for line in err)
+
+
+def test_what_is_no_run_is_refused_before_anything_is_written(tmp_path, capsys):
+    nothing = tmp_path / "nothing"
+    refused(["report", str(nothing), "--out", str(tmp_path / "page")],
+            f"RUN must be a folder that `python -m sim run` left, not {nothing}: it has no summary.json", capsys)
+    assert not (tmp_path / "page").exists()
 
 
 class OneBit(Standin):
@@ -162,8 +206,8 @@ HELP = "(see python -m sim run --help)"
 
 @pytest.mark.parametrize("arguments, message", [
     ([], "the following arguments are required: COMMAND (see python -m sim --help)"),
-    (["walk"], "argument COMMAND: invalid choice: 'walk' (choose from 'run', 'compare', 'figures', 'export', 'serve', "
-     "'bench') (see python -m sim --help)"),
+    (["walk"], "argument COMMAND: invalid choice: 'walk' (choose from 'run', 'compare', 'figures', 'export', 'report', "
+     "'serve', 'bench') (see python -m sim --help)"),
     (["run", "s.toml", "--out", "o"], f"the following arguments are required: --backend {HELP}"),
     (["run", "s.toml", "--backend", "fixed"], f"the following arguments are required: --out {HELP}"),
     (["run", "s.toml", "--backend", "gpu", "--out", "o"], "argument --backend: invalid choice: 'gpu' "
@@ -186,6 +230,7 @@ HELP = "(see python -m sim run --help)"
     (["run", "absent.toml", "--backend", "float", "--out", "o"],
      "absent.toml: the scene must be a readable file: No such file or directory"),
     (["compare"], "the following arguments are required: SCENE (see python -m sim compare --help)"),
+    (["report"], "the following arguments are required: RUN (see python -m sim report --help)"),
 ])
 def test_mistakes_in_the_arguments(arguments, message, capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)

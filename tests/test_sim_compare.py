@@ -8,14 +8,14 @@ import pytest
 from sim_objects import DT, MATERIALS, MESHES, Standin, block, in_place_of_the_circuit
 
 from golden.errors import InputError
-from sim import batch, machines
-from sim.compare import compare, power, shortcomings
+from sim import batch, machines, ranges
+from sim.compare import COMPARED, compare, completed, power, shortcomings
 from sim.face import watched
 from sim.run import run
 
-KEYS = ["scene", "dim", "force_dependent", "nodes", "edges", "steps", "dt", "lanes", "updates", "cycles",
-        "rtl_equals_fixed", "max_dx_rel", "final_dx_rel", "bound", "recovery", "max_da", "saturations", "faults",
-        "seconds"]
+KEYS = ["scene", "dim", "force_dependent", "nodes", "edges", "steps", "dt", "backends", "lanes", "updates", "cycles",
+        "cycles_per_step", "occupancy", "boards", "rtl_equals_fixed", "max_dx_rel", "final_dx_rel", "bound", "recovery",
+        "max_da", "energy", "saturations", "faults", "ranges", "seconds"]
 
 
 @pytest.fixture
@@ -46,13 +46,16 @@ def test_entry(circuit, material):
     json.dumps(entry, allow_nan=False)
     expected = {"scene": "object", "dim": 2, "nodes": 12, "edges": 23, "steps": 25, "dt": DT, "lanes": 2, "updates": 1,
                 "cycles": 2500, "rtl_equals_fixed": True, "saturations": 0, "faults": {"fixed": {}, "rtl": {}},
+                "backends": ["float", "fixed", "rtl"], "cycles_per_step": 100, "occupancy": 4 * 23 / 200,
                 "force_dependent": scene.force_dependent, "bound": 5e-5 if scene.force_dependent else 1e-5}
     assert {key: entry[key] for key in expected} == expected
-    apart = result.fixed.trajectory.x - result.float64.trajectory.x
+    apart = result.circuit.trajectory.x - result.float64.trajectory.x
     largest = max(np.hypot(*node) for frame in apart for node in frame)
     assert entry["max_dx_rel"] == pytest.approx(largest / scene.size, rel=1e-12)
     assert entry["final_dx_rel"] == result.dx_rel()[-1] <= entry["max_dx_rel"]
-    assert entry["max_da"] == max(np.abs(result.fixed.trajectory.a - result.float64.trajectory.a).ravel())
+    assert entry["energy"] == {name: values[-1] for name, values in result.energy.items()}
+    assert entry["ranges"] == ranges.of_run(scene, result.circuit.raw)
+    assert entry["max_da"] == max(np.abs(result.circuit.trajectory.a - result.float64.trajectory.a).ravel())
     assert shortcomings(entry) == []
 
 
@@ -75,9 +78,21 @@ def test_a_flag_of_the_circuit_is_a_saturation(monkeypatch):
     assert shortcomings(entry) == ["saturated: velocity"]
 
 
+def test_a_run_that_there_is_is_not_run_again(circuit):
+    scene = block(steps=(10, 5, 5), every=10)
+    fixed, told = run(scene, "fixed"), []
+    result = completed(scene, {"fixed": fixed}, ("float",), progress=lambda doing, steps: told.append(doing))
+    assert list(result.runs) == ["fixed", "float"] and result.circuit is fixed and set(told) == {"float", "ranges"}
+    entry = result.entry()
+    assert (entry["rtl_equals_fixed"], entry["cycles"], entry["lanes"], entry["occupancy"]) == (None,) * 4
+    assert entry["max_dx_rel"] == compare(scene).entry()["max_dx_rel"] and shortcomings(entry) == []
+    assert completed(scene, compare(scene).runs, COMPARED).circuit.backend == "rtl"
+
+
 def test_shortcomings():
     entry = {"rtl_equals_fixed": True, "saturations": 0, "faults": {}, "max_dx_rel": 1e-5, "bound": 1e-5}
     assert shortcomings(entry) == []
+    assert shortcomings(entry | {"rtl_equals_fixed": None}) == []
     assert shortcomings(entry | {"max_dx_rel": 1.26e-5}) == ["max_dx_rel must be at most 1e-5, not 1.3e-5"]
     assert shortcomings(entry | {"max_dx_rel": float("nan")}) == ["max_dx_rel must be at most 1e-5, not nan"]
     everything = {"rtl_equals_fixed": False, "saturations": 3, "faults": {"fixed": {"b": 2, "a": 1}, "rtl": {"b": 1}},
@@ -94,7 +109,7 @@ def test_power(x, text):
 def test_comparing_tells_how_far_it_is(circuit):
     told = []
     compare(block(steps=(10, 5, 5), every=10), progress=lambda backend, steps: told.append((backend, steps)))
-    assert [backend for n, (backend, _) in enumerate(told) if told[n - 1][0] != backend] == ["float", "fixed", "rtl"]
+    assert [backend for n, (backend, _) in enumerate(told) if told[n - 1][0] != backend] == [*COMPARED, "ranges"]
     assert {(backend, steps) for backend in ("float", "fixed", "rtl") for steps in (0, 20)} <= set(told)
 
 

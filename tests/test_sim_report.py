@@ -1,112 +1,120 @@
-"""sim.report: the page shows the numbers of compare.json, and pictures of what was computed."""
+"""sim.report: the page holds the numbers of compare.json and all that it draws, in one file."""
+import base64
 import json
 from dataclasses import replace
 from html.parser import HTMLParser
 
-import golden_objects as objects
 import numpy as np
 import pytest
-from sim_objects import DT, MATERIALS, MESHES, block, in_place_of_the_circuit
+from report_objects import FLAT, SOLID, WEIGHT
+from sim_objects import MESHES, block, in_place_of_the_circuit
 
 from golden import mesh
-from sim import machines, report
+from sim import energy, machines, report
 from sim.compare import compare
-from sim.report import shapes, surface
-from sim.report.page import brief, percent, slug
+from sim.face import watched
+from sim.report import pack, style, surface
+from sim.report.page import brief, least, percent, si, slug
 
 SHOWN = {"dim", "nodes", "edges", "steps", "lanes", "rtl_equals_fixed", "max_dx_rel", "bound", "final_dx_rel", "max_da",
          "saturations"}
+SCENES = FLAT, SOLID, WEIGHT
 
 
 class Page(HTMLParser):
-    """The page's figures by scene and key, its text and its pictures."""
+    """The page's figures by scene and key, its text, and what its scripts hold."""
 
     def __init__(self, text):
         super().__init__()
-        self.figures, self.pictures, self.text, self.scene = {}, [], "", None
-        self.feed(text.partition("</style>")[2])
+        self.figures, self.headroom, self.boards, self.text, self.data = {}, {}, {}, "", []
+        self.scene, self.script = None, False
+        self.feed(text)
 
     def handle_starttag(self, tag, attributes):
         attributes = dict(attributes)
-        if tag == "tr" or tag == "section":
-            self.scene = attributes.get("data-scene")
+        self.scene = attributes.get("data-scene", self.scene)
         if "data-key" in attributes:
-            found = self.figures.setdefault(self.scene, {})
-            assert attributes["data-key"] not in found
-            found[attributes["data-key"]] = json.loads(attributes["data-value"])
-        if tag == "img":
-            assert attributes["alt"]
-            self.pictures.append(attributes["src"])
+            key, value = attributes["data-key"], json.loads(attributes["data-value"])
+            assert self.figures.setdefault(self.scene, {}).setdefault(key, value) == value
+        if "data-headroom" in attributes:
+            self.headroom.setdefault(self.scene, []).append(json.loads(attributes["data-headroom"]))
+        if "data-board" in attributes:
+            self.boards.setdefault(self.scene, []).append(attributes["data-board"])
+        assert "src" not in attributes and attributes.get("href", "#").startswith(("#", "data:,"))
+        self.script = tag in ("script", "style")
+        self.json = attributes.get("type") == "application/json"
+
+    def handle_endtag(self, tag):
+        self.script = False
 
     def handle_data(self, data):
-        self.text += data
+        if self.script and self.json:
+            self.data.append(json.loads(data))
+        elif not self.script:
+            self.text += data
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A page of two scenes, one of them with a name and a description that need care."""
-    out = tmp_path_factory.mktemp("report")
+def comparisons():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(machines, "circuit", in_place_of_the_circuit())
-        flat = replace(block("rheological-force", steps=(10, 5, 10)), name="../<b>soft & wet</b>",
-                       description="1 < 2 & 3")
-        weight = [objects.phase(MESHES[3], 12, objects.bottom(MESHES[3]), name="stand")]
-        solid = replace(objects.scene(MESHES[3], MATERIALS["viscoelastic"], DT, weight, 0.01, (0, 0, -9.81), every=4),
-                        name="solid")
-        report.write([report.section(scene, lanes=2, updates=1, folder=out) for scene in (flat, solid)], out)
+        return [compare(scene) for scene in SCENES]
+
+
+@pytest.fixture(scope="module")
+def folder(comparisons, tmp_path_factory):
+    """A page of three scenes, one of them with a name and a description that need care."""
+    out = tmp_path_factory.mktemp("report")
+    report.write([report.Section.of(comparison) for comparison in comparisons], out)
     return out
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def page(folder):
     return Page((folder / "index.html").read_text())
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def entries(folder):
     return json.loads((folder / "compare.json").read_text())
 
 
 def test_the_figures_are_those_of_the_json(page, entries):
-    assert list(page.figures) == ["../<b>soft & wet</b>", "solid"] == [entry["scene"] for entry in entries]
+    assert list(page.figures) == [scene.name for scene in SCENES] == [entry["scene"] for entry in entries]
     for entry in entries:
         shown = page.figures[entry["scene"]]
-        assert shown.keys() >= SHOWN | {"cycles"}
+        assert shown.keys() >= SHOWN | {"cycles", "cycles_per_step", "occupancy"}
         assert shown == {key: entry[key] for key in shown}
-    assert "recovery" in page.figures["../<b>soft & wet</b>"] and "recovery" not in page.figures["solid"]
+        assert page.headroom[entry["scene"]] == [quantity["headroom_bits"] for quantity in entry["ranges"]]
+        assert page.boards[entry["scene"]] == [board["board"] for board in entry["boards"]]
+    assert "recovery" in page.figures[FLAT.name] and "recovery" not in page.figures["weight"]
 
 
 def test_the_figures_can_be_read(page, entries):
     for entry in entries:
         for key in SHOWN:
             assert brief(entry[key]) in page.text
-    assert page.text.count("passes") == 2
+        assert percent(entry["occupancy"]) in page.text
+        assert si(entry["energy"]["dissipated"], "J") in page.text
+    assert page.text.count("energy of its weight") == 1  # of the one that stands under it
+    assert page.text.count("passes") == 2 * len(SCENES) and "not timed" in page.text
 
 
 def test_text_of_the_scene_is_text(page, folder):
-    assert "1 < 2 & 3" in page.text and "../<b>soft & wet</b>" in page.text
+    assert "1 < 2 & 3" in page.text and FLAT.name in page.text
     assert "<b>soft" not in (folder / "index.html").read_text()
 
 
-def test_the_page_opens_from_disk(page, folder):
+def test_it_is_one_file(folder):
+    assert {path.name for path in folder.iterdir()} == {"index.html", "compare.json"}
     text = (folder / "index.html").read_text()
-    assert "http" not in text and "<script" not in text
-    assert page.pictures == ["b-soft-wet-b-shapes.png", "b-soft-wet-b-curves.png",
-                             "solid-shapes.png", "solid-curves.png"]
-    assert {path.name for path in folder.iterdir()} == {"index.html", "compare.json", *page.pictures}
-    from matplotlib.image import imread
-
-    for name in page.pictures:
-        pixels = imread(folder / name)
-        assert pixels.shape[1] == 1800 and pixels.shape[0] >= 400
-        assert 0.03 < (pixels < 0.9).mean() < 0.6  # neither empty nor full
+    assert "http" not in text.replace("http://www.w3.org/2000/svg", "")  # the name of a language, not a place
 
 
-def test_a_scene_that_fails_says_so(tmp_path, entries):
+def test_a_scene_that_fails_says_so(tmp_path, entries, comparisons):
     faults = {"fixed": {"velocity": 2}, "rtl": {}}
     failing = entries[1] | {"rtl_equals_fixed": False, "saturations": 2, "faults": faults}
-    section = report.Section(failing, "", ["fact"], {"shapes": "a.png", "curves": "b.png"})
-    report.write([section], tmp_path)
+    report.write([replace(report.Section.of(comparisons[1]), entry=failing)], tmp_path)
     page = Page((tmp_path / "index.html").read_text())
     assert page.figures["solid"]["rtl_equals_fixed"] is False
     assert "Fails: saturated: velocity." in page.text
@@ -114,11 +122,93 @@ def test_a_scene_that_fails_says_so(tmp_path, entries):
     assert "passes" not in page.text
 
 
+def test_a_board_that_was_timed_tells_its_step(tmp_path, entries, comparisons):
+    boards = [{"board": "small", "timed": True, "lanes": 1, "updates": 1, "clock_mhz": 100.0, "fits": False},
+              {"board": "large", "timed": True, "lanes": 4, "updates": 1, "clock_mhz": 120.0, "fits": True,
+               "cycles_per_step": 540, "step_us": 4.5, "real_time": 55.6}]
+    report.write([replace(report.Section.of(comparisons[1]), entry=entries[1] | {"boards": boards})], tmp_path)
+    text = Page((tmp_path / "index.html").read_text()).text
+    assert "does not fit" in text and "120.0 MHz" in text and "4.50 µs" in text and "56 ×" in text
+    assert "not timed" not in text
+
+
+def unpacked(text, kind, shape):
+    return np.frombuffer(base64.b64decode(text), kind).reshape(shape)
+
+
+def test_what_is_drawn_can_be_had_again(page, comparisons):
+    for drawn, comparison in zip(page.data, comparisons, strict=False):
+        scene, float64, circuit = comparison.scene, comparison.float64.trajectory, comparison.circuit.trajectory
+        shape = len(drawn["frames"]), *scene.mesh.points.shape
+        assert drawn["frames"] == list(range(len(scene.frames)))
+        x = drawn["x"]["low"] + np.array(drawn["x"]["step"]) * unpacked(drawn["x"]["data"], "<u2", shape)
+        np.testing.assert_allclose(x, float64.x, atol=scene.size / 65535)
+        largest = np.abs(circuit.x - float64.x).max()
+        apart = drawn["apart"]["step"] * unpacked(drawn["apart"]["data"], "<i2", shape)
+        np.testing.assert_allclose(apart, circuit.x - float64.x, atol=largest / 65534)
+        np.testing.assert_array_equal(unpacked(drawn["edges"], "<u2", (-1, 2)), scene.mesh.edges)
+        for name, run in (("float64", float64), ("circuit", circuit)):
+            scale = drawn["force"][name]
+            force = scale["low"] + (scale["high"] - scale["low"]) / 255 * unpacked(scale["data"], "u1", run.a.shape)
+            expected = energy.edge_forces(scene, run).clip(scale["low"], scale["high"])
+            np.testing.assert_allclose(force, expected, atol=scale["high"] / 254)
+        curves, face = drawn["curves"], watched(scene)
+        np.testing.assert_allclose(curves["dx_rel"], comparison.dx_rel(), rtol=1e-5)
+        assert curves["force"]["circuit"][0] is None and curves["force"]["circuit"][-1] is not None
+        np.testing.assert_allclose(curves["height"]["float64"], face.height(float64), rtol=1e-5)
+        assert [phase["end"] for phase in drawn["phases"]] == pytest.approx(circuit.t[scene.end_frames])
+
+
+def test_many_frames_are_thinned_but_for_the_ends_of_phases():
+    scene = block(steps=(601, 3, 700), every=1)
+    frames = pack.shown(scene)
+    assert pack.MOST <= len(frames) <= pack.MOST + 3 and {0, 601, 604, 1304} <= set(frames.tolist())
+    assert len(pack.shown(block())) == len(block().frames)
+
+
+def test_a_large_object_has_as_many_frames_as_there_is_room_for(monkeypatch):
+    scene = block(dim=3, steps=(60, 20, 30), every=1)
+    monkeypatch.setattr(pack, "BUDGET", 20_000)
+    frames = pack.shown(scene)
+    assert 2 * len(scene.phases) < len(frames) < 40
+    assert len(frames) * 4 * (scene.mesh.points.size + len(scene.mesh.edges)) < 1.1 * pack.BUDGET
+
+
+def test_ratios_that_hardly_change_have_a_scale_all_the_same():
+    assert pack.ratio_limits([np.array([0.431, 0.6]), np.array([0.5])]) == (0.43, 0.6)
+    assert pack.ratio_limits([np.full(3, 0.5)]) == (0.45, 0.55)
+    assert pack.ratio_limits([np.ones(3)]) == pytest.approx((0.9, 1.0))
+
+
+def test_equal_runs_are_no_distance_apart():
+    same = pack.centred(np.zeros((2, 3, 2)), 16)
+    assert same["step"] == 1.0 and not unpacked(same["data"], "<i2", -1).any()
+
+
+def test_colours_run_from_dark_to_light_or_through_grey():
+    for name, scale in style.scales().items():
+        light = [np.dot(scale(n / 20)[:3], [0.2126, 0.7152, 0.0722]) for n in range(21)]
+        assert (np.diff(light) > 0).all() if name != "force" else np.argmax(light) == 10
+
+
 @pytest.mark.parametrize("value, text", [
-    (True, "yes"), (False, "no"), (0.0, "0"), (3.21e-6, "3.2e-6"), (0.25, "0.25"), (12.345, "12.3"), (7, "7"),
-    (1234567, "1\u202f234\u202f567")])
+    (True, "yes"), (False, "no"), (None, "–"), (0.0, "0"), (3.21e-6, "3.2e-6"), (0.25, "0.25"), (12.345, "12.3"),
+    (7, "7"), (1234567, "1\u202f234\u202f567")])
 def test_brief(value, text):
     assert brief(value) == text
+
+
+@pytest.mark.parametrize("value, unit, text", [
+    (0.01234, "N", "12.3 mN"), (-2e-7, "m", "−200 nm"), (1.0, "J", "1 J"), (0.0, "J", "0 J"), (0.75, "", "0.75"),
+    (0.99996, "N", "1000 mN"), (54321.0, "N", "54300 N")])
+def test_si(value, unit, text):
+    assert si(value, unit) == text
+
+
+def test_the_least_headroom_is_that_of_what_depends_on_the_scene():
+    ranges = [{"unit": "", "headroom_bits": 0.0}, {"unit": "N", "headroom_bits": 2.0},
+              {"unit": "m", "headroom_bits": 1.5}, {"unit": "m/s", "headroom_bits": None}]
+    assert least(ranges) == {"unit": "m", "headroom_bits": 1.5}
 
 
 @pytest.mark.parametrize("part, text", [(0.5041, "50.4 %"), (-1e-9, "0.0 %"), (1.0, "100.0 %")])
@@ -129,30 +219,6 @@ def test_percent(part, text):
 @pytest.mark.parametrize("name, text", [("plastic-3d", "plastic-3d"), ("Wet clay / 2", "wet-clay-2"), ("//", "scene")])
 def test_slug(name, text):
     assert slug(name) == text
-
-
-def test_the_shapes_are_those_of_float_and_circuit(monkeypatch):
-    monkeypatch.setattr(machines, "circuit", in_place_of_the_circuit())
-    comparison = compare(block("plastic", steps=(10, 5, 10), every=5))
-    figure = shapes.draw(comparison)
-    titles = [axes.get_title() for axes in figure.axes]
-    assert titles == ["initial", "deformed: end of press, 0.002 s", "final: end of release, 0.005 s"]
-    triangles = len(comparison.scene.mesh.cells)
-    for axes, frame in zip(figure.axes, (0, 2, -1), strict=True):
-        paths = [path.vertices[:3] for path in axes.collections[0].get_paths()]
-        for run, drawn in ((comparison.float64, paths[:triangles]), (comparison.rtl, paths[triangles:])):
-            np.testing.assert_allclose(drawn, run.trajectory.x[frame][comparison.scene.mesh.cells] * 1e3)
-
-
-def test_a_single_phase_is_shown_in_its_middle():
-    m = MESHES[2]
-    scene = objects.scene(m, MATERIALS["plastic"], DT, [objects.phase(m, 8, objects.bottom(m), name="fall")], every=2)
-    from sim.run import run
-
-    trajectory = run(scene, "float").trajectory
-    moving = replace(trajectory, v=trajectory.v + scene.size)
-    assert shapes.chosen(scene, moving) == [
-        (0, "initial"), (2, "deformed: during fall, 0.0008 s"), (4, "final: end of fall, 0.0016 s")]
 
 
 @pytest.mark.parametrize("tetrahedra", [5, 6])

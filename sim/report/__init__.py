@@ -1,5 +1,5 @@
-"""The page of a comparison: shapes, differences and numbers of every scene, in a folder that opens from disk."""
+"""The page of a comparison: every scene to be looked at, with its differences and numbers, in one file."""
 
-from sim.report.page import Section, section, write
+from sim.report.page import Section, of_runs, section, write
 
-__all__ = ["Section", "section", "write"]
+__all__ = ["Section", "of_runs", "section", "write"]

@@ -1,4 +1,4 @@
-"""index.html and compare.json from what was compared."""
+"""index.html and compare.json from what was compared: the page is one file that needs no other."""
 
 from __future__ import annotations
 
@@ -7,10 +7,20 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import jinja2
+from matplotlib.colors import to_hex
+
 from golden.files import write_text
 from golden.problem import Scene
-from sim.compare import compare, power, shortcomings
+from sim import ranges, stored
+from sim.compare import Comparison, compare, completed, power, shortcomings
 from sim.errors import about
+from sim.report import pack, style
+
+FOLDER = Path(__file__).parent
+BACKENDS = {"float": "float64", "fixed": "integer model", "rtl": "Verilog in simulation", "board": "board"}
+SCRIPTS = "data.js", "camera.js", "paint.js", "viewer.js", "chart.js", "ranges.js", "page.js"
+SAMPLES = 33  # of a colour scale
 
 
 @dataclass(frozen=True)
@@ -20,34 +30,55 @@ class Section:
     entry: dict  # its object in compare.json
     description: str
     facts: list[str]
-    pictures: dict[str, str]  # "shapes", "curves" -> name of the file beside the page
+    looked: int  # frames whose ranges were looked at
+    drawn: dict  # what the page draws, as sim.report.pack.scene
+
+    @classmethod
+    def of(cls, comparison: Comparison) -> Section:
+        scene = comparison.scene
+        return cls(comparison.entry(), scene.description, facts(scene), len(ranges.sampled(scene)),
+                   pack.scene(comparison))
 
 
-def section(scene: Scene, progress=None, *, lanes: int, updates: int, folder: Path) -> Section:
-    """Compare a scene and draw it: the pictures go to the folder."""
-    from sim.report import curves, shapes
-
+def section(scene: Scene, progress=None, *, lanes: int, updates: int) -> Section:
+    """Run a scene on all backends that are compared, and pack it."""
     with about(scene):
-        comparison = compare(scene, lanes=lanes, updates=updates, progress=progress)
-    figures = {"shapes": shapes.draw(comparison), "curves": curves.draw(comparison)}
-    pictures = {kind: f"{slug(scene.name)}-{kind}.png" for kind in figures}
-    for kind, figure in figures.items():
-        figure.savefig(folder / pictures[kind], dpi=150)
-    return Section(comparison.entry(), scene.description, facts(scene), pictures)
+        return Section.of(compare(scene, lanes=lanes, updates=updates, progress=progress))
+
+
+def of_runs(scene: Scene, progress=None, *, folders: dict[str, dict[str, Path]]) -> Section:
+    """Pack the runs of a scene that are in ``folders[name of the scene]``; float64, if it isn't there, is run."""
+    with about(scene):
+        runs = {backend: stored.load(folder)[1] for backend, folder in folders[scene.name].items()}
+        return Section.of(completed(scene, runs, ("float",), progress=progress))
 
 
 def write(sections: list[Section], folder: Path) -> None:
     """Write the page and the figures that it shows."""
-    import jinja2
-
     entries = [section.entry for section in sections]
-    loader = jinja2.FileSystemLoader(Path(__file__).parent)
     environment = jinja2.Environment(
-        loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    environment.filters |= {"brief": brief, "percent": percent, "shortcomings": shortcomings, "slug": slug}
-    page = environment.get_template("page.html.j2").render(sections=sections, entries=entries)
+        loader=jinja2.FileSystemLoader(FOLDER), autoescape=True, trim_blocks=True, lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined)
+    environment.filters |= {"brief": brief, "percent": percent, "shortcomings": shortcomings, "slug": slug,
+                            "si": si, "least": least}
+    page = environment.get_template("page.html.j2").render(
+        sections=sections, entries=entries, backends=BACKENDS, style=(FOLDER / "page.css").read_text(),
+        script="\n".join((FOLDER / name).read_text() for name in SCRIPTS),
+        data=[inlined(section.drawn | {"ranges": section.entry["ranges"]}) for section in sections],
+        colours=inlined(colours()))
     write_text(folder / "compare.json", json.dumps(entries, indent=2, allow_nan=False) + "\n")
     write_text(folder / "index.html", page)
+
+
+def colours() -> dict[str, list[str]]:
+    """Each quantity's scale, as colours from its lowest to its highest value."""
+    return {name: [to_hex(scale(n / (SAMPLES - 1))) for n in range(SAMPLES)]
+            for name, scale in style.scales().items()}
+
+
+def inlined(value) -> str:
+    """JSON that may stand in a script of a page."""
+    return json.dumps(value, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def facts(scene: Scene) -> list[str]:
@@ -57,8 +88,14 @@ def facts(scene: Scene) -> list[str]:
     return [f"{extent} mm", phases, f"step {scene.dt * 1e3:.3g} ms"]
 
 
+def least(ranges: list[dict]) -> dict:
+    """The quantity with the least headroom, of those that have a unit: the others are bounded by what they are."""
+    free = [entry for entry in ranges if entry["unit"] and entry["headroom_bits"] is not None]
+    return min(free, key=lambda entry: entry["headroom_bits"])
+
+
 def slug(name: str) -> str:
-    """The name as part of a file's name and of an address."""
+    """The name as part of an address."""
     return re.sub(r"\W+", "-", name).strip("-").lower() or "scene"
 
 
@@ -66,8 +103,20 @@ def percent(part: float) -> str:
     return f"{round(100 * part, 1) + 0:.1f} %"  # + 0: no negative zero
 
 
+def si(value: float, unit: str) -> str:
+    """A quantity with its unit's prefix: 0.0123 N is 12.3 mN. A number has none."""
+    if not unit:
+        return f"{float(f'{value:.3g}'):g}"
+    for prefix, factor in (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12)):
+        if abs(value) >= factor:
+            return f"{float(f'{value / factor:.3g}'):g} {prefix}{unit}".replace("-", "−")
+    return f"0 {unit}"
+
+
 def brief(value) -> str:
     """A figure as it is read: yes or no, whole numbers in full, others with two digits."""
+    if value is None:
+        return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):

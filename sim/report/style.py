@@ -1,6 +1,7 @@
 """Colours and lines that all pictures share. The colours are Okabe and Ito's, told apart by colour-blind readers."""
 
-from matplotlib.colors import to_rgb
+from matplotlib import colormaps
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -11,6 +12,13 @@ FLOAT_LINE = {"color": FLOAT_MESH, "linewidth": 5.5, "solid_capstyle": "round"}
 CIRCUIT_LINE = {"color": CIRCUIT, "linewidth": 1.5}
 OUTLINE = {"color": "#222222", "linewidth": 1.0, "linestyle": (0, (5, 4))}
 WIDTH = 12.0  # inches, of every picture
+
+
+def scales() -> dict[str, object]:
+    """Colour maps by what is shown: ratios and differences get lighter as they grow, to colour-blind readers too;
+    forces go from pulling (blue) over none to pushing (vermilion)."""
+    force = LinearSegmentedColormap.from_list("force", [CIRCUIT, "#7fbde0", "#dcdcdc", "#f0a868", BOUND])
+    return {"ratio": colormaps["viridis"], "force": force, "apart": colormaps["cividis"]}
 
 
 def figure(height: float) -> Figure:

@@ -1,0 +1,75 @@
+"""Where the energy of a run is, and the forces of its edges: float64's formulas on the states that were kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from golden.model import Model, dot, norm
+from golden.problem import Phase, Scene
+from golden.trajectory import Trajectory
+
+
+def edge_forces(scene: Scene, run: Trajectory) -> np.ndarray:
+    """(F, E) N: positive where an edge pushes its ends apart, as when it is compressed."""
+    model, forces = Model(scene), np.empty(run.a.shape)
+    for frame, force in enumerate(forces):
+        _put(model, run, frame)
+        d = model.x[model.j] - model.x[model.i]
+        length = norm(d)
+        ldot = dot(d / length[:, None], model.v[model.j] - model.v[model.i])
+        force[:], _ = model.edge_law(length, ldot, model.a)
+    return forces
+
+
+def energies(scene: Scene, run: Trajectory) -> dict[str, np.ndarray]:
+    """(F,) J each: ``kinetic``, ``elastic`` (of the springs, k (a l - L)^2 / 2) and ``gravity`` (0 at the start) are
+    in the object; ``work`` is what driving devices and loads have put in since it was at rest, before frame 0 has its
+    driven nodes move; ``dissipated`` is the rest.
+
+    The work of a load is exact. That of a device is a sum over the frames (trapezoids): it is as good as the
+    force between two frames is straight.
+    """
+    model = Model(scene)
+    i, j = model.i, model.j
+    stretch = run.a * np.linalg.norm(run.x[:, j] - run.x[:, i], axis=2) - model.L
+    result = {
+        "kinetic": (run.v**2).sum(axis=2) @ scene.mass / 2,
+        "elastic": stretch**2 @ model.k / 2,
+        "gravity": -((run.x - run.x[0]) @ scene.gravity) @ scene.mass,
+    }
+    work = np.full(len(run.t), result["kinetic"][0])
+    for phase, frames in _frames(scene):
+        steady = phase.load * (run.x[frames] - run.x[frames[0]])
+        gained, power = _begun(model, phase, run, frames)
+        pressed = np.diff(run.t[frames]) * (power[1:] + power[:-1]) / 2
+        work[frames[1:]] = work[frames[0]] + gained + steady.sum(axis=(1, 2))[1:] + np.cumsum(pressed)
+    inside = sum(result.values())
+    return result | {"work": work, "dissipated": work - work[0] - (inside - inside[0])}
+
+
+def _frames(scene: Scene) -> Iterator[tuple[Phase, np.ndarray]]:
+    """Each phase and its frames, from the one that it starts from to the one that it ends with."""
+    start = 0
+    for phase in scene.phases:
+        end = start + phase.steps
+        yield phase, np.flatnonzero((start <= scene.frames) & (scene.frames <= end))
+        start = end
+
+
+def _begun(model: Model, phase: Phase, run: Trajectory, frames) -> tuple[float, np.ndarray]:
+    """The kinetic energy that a phase's constraints put in when it begins, and their power (W) at its frames."""
+    power = np.zeros(len(frames))
+    for n, frame in enumerate(frames):
+        _put(model, run, frame)
+        before = model.v.copy()
+        model.begin(phase)
+        power[n] = (model.reaction() * model.v)[phase.driven].sum()
+        if n == 0:
+            gained = float(((model.v**2 - before**2).sum(axis=1) @ model.scene.mass) / 2)
+    return gained, power
+
+
+def _put(model: Model, run: Trajectory, frame: int) -> None:
+    model.x, model.v, model.a = run.x[frame].copy(), run.v[frame].copy(), run.a[frame].copy()

@@ -1,0 +1,49 @@
+"""How long a circuit takes for a step of a scene: counted in its run, and on the boards whose clock is known."""
+
+from __future__ import annotations
+
+from golden.errors import InputError
+from golden.problem import Scene
+from golden.rk4 import RK4
+from sim import limits
+from sim.run import Result
+
+
+def of_run(scene: Scene, result: Result) -> dict:
+    """``cycles_per_step`` and ``occupancy`` (edges issued per lane and cycle) of a circuit's run; None of others."""
+    if result.cycles is None:
+        return {"cycles_per_step": None, "occupancy": None}
+    issued = RK4.stages * len(scene.mesh.edges) * scene.steps
+    return {"cycles_per_step": result.cycles / scene.steps, "occupancy": issued / (result.lanes * result.cycles)}
+
+
+def on_boards(scene: Scene, folder=None) -> list[dict]:
+    """What a step would take on each board whose device the tools time.
+
+    ``timed`` says whether there is a timing result of the board, ``fits`` whether its circuit holds the scene; with
+    both the cycles of a step are those of the cycle model (`sim.cycles`), and ``clock_mhz``, ``step_us`` and
+    ``real_time`` (simulated time / time) follow.
+    """
+    from hw import boards
+    from hw.timing import result as timing  # Amaranth is slow to load
+
+    found = []
+    for name in boards.timed():
+        path = (folder or timing.KEPT) / f"{name}.json"
+        of_board = {"board": name, "timed": path.exists()}
+        found.append(of_board | (_timed(scene, timing.read(path, timing.Result)) if path.exists() else {}))
+    return found
+
+
+def _timed(scene: Scene, timing) -> dict:
+    from hw.parameters import Parameters
+    from sim.cycles import Wavefront
+
+    parameters = Parameters(**{name: getattr(timing, name) for name in Parameters.RANGES})
+    sizes = {"lanes": parameters.lanes, "updates": parameters.updates, "clock_mhz": timing.clock_mhz}
+    try:
+        cycles = Wavefront(limits.load(scene).image, parameters).per_step()
+    except InputError:  # too small for it
+        return sizes | {"fits": False}
+    step_us = cycles / timing.clock_mhz
+    return sizes | {"fits": True, "cycles_per_step": cycles, "step_us": step_us, "real_time": scene.dt * 1e6 / step_us}
