@@ -56,9 +56,7 @@ class Model:
         self._consist(replace(self.scene, materials=materials))
 
     def begin(self, phase: Phase) -> None:
-        """Put the object under a phase's constraints and loads, with its materials if it brings some."""
-        if phase.materials:
-            self.become(phase.materials)
+        """Put the object under a phase's constraints and loads."""
         mass = self.scene.mass[:, None]
         self.held = phase.held[:, None]
         self.mobility = np.where(self.held, 0, 1 / mass)
@@ -132,6 +130,8 @@ def simulate(scene: Scene, progress: Callable[[int], object] | None = None) -> T
     done = 0
     with np.errstate(all="ignore"):
         for phase in scene.phases:
+            if phase.materials:
+                model.become(phase.materials)
             model.begin(phase)
             for _ in range(phase.steps):
                 model.step()

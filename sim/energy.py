@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from golden.model import Model, dot, norm
+from golden.model import Model
 from golden.problem import Phase, Scene
 from golden.trajectory import Trajectory
 
@@ -14,12 +14,10 @@ from golden.trajectory import Trajectory
 def edge_forces(scene: Scene, run: Trajectory) -> np.ndarray:
     """(F, E) N: positive where an edge pushes its ends apart, as when it is compressed."""
     model, forces = Model(scene), np.empty(run.a.shape)
-    for frame, force in enumerate(forces):
-        _put(model, run, frame)
-        d = model.x[model.j] - model.x[model.i]
-        length = norm(d)
-        ldot = dot(d / length[:, None], model.v[model.j] - model.v[model.i])
-        force[:], _ = model.edge_law(length, ldot, model.a)
+    for phase, frames in _frames(scene):
+        _enter(model, phase, run, frames[0])
+        for frame in frames if frames[0] == 0 else frames[1:]:
+            forces[frame] = model.along(run.x[frame], run.v[frame], run.a[frame])[1]
     return forces
 
 
@@ -29,18 +27,20 @@ def energies(scene: Scene, run: Trajectory) -> dict[str, np.ndarray]:
     driven nodes move; ``dissipated`` is the rest.
 
     The work of a load is exact. That of a device is a sum over the frames (trapezoids): it is as good as the
-    force between two frames is straight.
+    force between two frames is straight. Materials that a phase brings keep the forces, not the elastic energy: what
+    that gains or loses so is in ``dissipated``.
     """
     model = Model(scene)
-    i, j = model.i, model.j
-    stretch = run.a * np.linalg.norm(run.x[:, j] - run.x[:, i], axis=2) - model.L
+    voigt = run.a * np.linalg.norm(run.x[:, model.j] - run.x[:, model.i], axis=2)
     result = {
         "kinetic": (run.v**2).sum(axis=2) @ scene.mass / 2,
-        "elastic": stretch**2 @ model.k / 2,
+        "elastic": np.zeros(len(run.t)),  # none at the start
         "gravity": -((run.x - run.x[0]) @ scene.gravity) @ scene.mass,
     }
     work = np.full(len(run.t), result["kinetic"][0])
     for phase, frames in _frames(scene):
+        _enter(model, phase, run, frames[0])
+        result["elastic"][frames[1:]] = (voigt[frames[1:]] - model.L) ** 2 @ model.k / 2
         steady = phase.load * (run.x[frames] - run.x[frames[0]])
         gained, power = _begun(model, phase, run, frames)
         pressed = np.diff(run.t[frames]) * (power[1:] + power[:-1]) / 2
@@ -56,6 +56,13 @@ def _frames(scene: Scene) -> Iterator[tuple[Phase, np.ndarray]]:
         end = start + phase.steps
         yield phase, np.flatnonzero((start <= scene.frames) & (scene.frames <= end))
         start = end
+
+
+def _enter(model: Model, phase: Phase, run: Trajectory, frame: int) -> None:
+    """Give the model the materials that the phase brings, in the state of this frame."""
+    if phase.materials:
+        _put(model, run, frame)
+        model.become(phase.materials)
 
 
 def _begun(model: Model, phase: Phase, run: Trajectory, frames) -> tuple[float, np.ndarray]:

@@ -10,9 +10,9 @@ import numpy as np
 
 from golden import meshfile
 from golden.files import replaced
-from golden.model import Model
 from golden.problem import Scene
 from golden.trajectory import Trajectory
+from sim.energy import edge_forces
 
 COLLECTION = "run.pvd"
 
@@ -27,13 +27,13 @@ def vtu(scene: Scene, trajectory: Trajectory, folder: Path,
     """
     collection = folder / COLLECTION
     collection.unlink(missing_ok=True)
-    model, mesh = Model(scene), scene.mesh
+    mesh, forces = scene.mesh, edge_forces(scene, trajectory)
     of_cells = mesh.cell_edges()
     digits = max(4, len(str(len(trajectory.t) - 1)))
     paths = []
     for n in shown(range(len(trajectory.t))):
         x, v, a, reaction = (getattr(trajectory, name)[n] for name in ("x", "v", "a", "reaction"))
-        force = model.along(x, v, a)[1]
+        force = forces[n]
         paths.append(folder / f"frame-{n:0{digits}}.vtu")
         meshfile.write(
             paths[-1], x, [mesh.edges, mesh.cells],

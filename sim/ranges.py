@@ -11,6 +11,7 @@ from golden.machine import Machine
 from golden.problem import Scene
 from sim import limits
 from sim.run import Raw
+from sim.switch import switch
 from sim.units import Units
 
 SAMPLES = 100
@@ -104,11 +105,15 @@ def of_run(scene: Scene, raw: Raw, progress: Callable[[int], object] | None = No
 
     ``progress`` is called with the step that was reached.
     """
-    ranges, loaded = Ranges(), limits.load(scene)
+    ranges, loaded, begun = Ranges(), limits.load(scene), None
     machine = Machine(loaded.image, ranges)
     for frame, phase in _with_phase(scene):
-        machine.x, machine.ratio = raw.x[frame][loaded.node_order], raw.ratio[frame][loaded.edge_order]
-        machine.restart(loaded.start(phase, raw.v[frame][loaded.node_order]))
+        machine.x, machine.v = raw.x[frame][loaded.node_order], raw.v[frame][loaded.node_order]
+        machine.ratio = raw.ratio[frame][loaded.edge_order]
+        if phase is not begun and phase.materials:
+            loaded = switch(loaded, machine, phase.materials)
+        begun = phase
+        machine.restart(loaded.start(phase, machine.v))
         machine.step()
         if progress:
             progress(int(scene.frames[frame]) + 1)

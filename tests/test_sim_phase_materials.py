@@ -11,6 +11,7 @@ from golden import archive
 from golden import scene as scenes
 from golden.errors import InputError
 from golden.model import Model
+from sim import energy, ranges
 from sim.compare import compare
 from sim.run import run
 
@@ -98,6 +99,22 @@ def test_float_and_integers_become_the_same(names):
     assert np.linalg.norm(fixed.x - float64.x, axis=2).max() / scene.size < (5e-5 if scene.force_dependent else 1e-5)
     unswitched = run(block(names[0], steps=(60, 60, 120), every=1), "float").trajectory
     assert np.abs(unswitched.x - float64.x).max() / scene.size > 1e-3  # there is something to see
+
+
+def test_forces_and_ranges_are_those_of_the_materials_of_the_time():
+    """At a held node in equilibrium with its device the forces of the edges are the reaction."""
+    scene = switching("rheological", "viscoelastic")
+    result = run(scene, "float")
+    forces, (i, j) = energy.edge_forces(scene, result.trajectory), scene.mesh.edges.T
+    for frame, (x, reaction) in enumerate(zip(result.trajectory.x, result.trajectory.reaction, strict=True)):
+        d = x[j] - x[i]
+        push, total = forces[frame, :, None] * d / np.linalg.norm(d, axis=1)[:, None], np.zeros_like(x)
+        np.subtract.at(total, i, push)
+        np.add.at(total, j, push)
+        held = reaction != 0
+        assert np.allclose(total[held], -reaction[held], atol=1e-9 * np.abs(reaction).max()), frame
+    seen = {entry["quantity"]: entry["largest"] for entry in ranges.of_run(scene, run(scene, "fixed").raw)}
+    assert seen["ratio_next"] == 1.0  # the viscoelastic ratio: the other one's stays below
 
 
 def test_the_circuit_gives_the_bits_of_the_integer_model():
