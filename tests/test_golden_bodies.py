@@ -44,7 +44,7 @@ def test_no_element_is_bad_and_the_body_is_whole(name, edge, seed):
 
 @pytest.mark.campaign
 def test_five_hundred_meshes(seed):
-    """Nearly every seed gives a mesh, and what it gives is good; the few that don't are refused, and only coarse ones."""
+    """Nearly every seed gives a mesh, which is good; the few that are refused are of a coarse one."""
     refusals, worst = [], {2: 1.0, 3: 1.0}
     for name, edge in CASES:
         for number in range(30):
