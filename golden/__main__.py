@@ -10,7 +10,7 @@ from pathlib import Path
 from msgspec.structs import fields
 
 from golden import schema
-from golden.command import Parser, execute
+from golden.command import Parser, execute, said_meanwhile
 from golden.errors import InputError
 
 MADE = {tag: [field.name for field in fields(kind)] for tag, kind in schema.KINDS.items() if tag != "file"}
@@ -62,13 +62,17 @@ def mesh(args) -> int:
 
     table, out = _table(args), args.out and _free(Path(args.out), args.force)
     materials_of = scene.load(args.scene) if args.scene else None
-    try:
-        made = kinds.make(table, Path())
-    except InputError as error:
-        raise InputError(f"--{error}" if args.what in MADE else f"{args.what}: {error}") from None
-    found = inspection.inspect(made, materials_of)
+    with said_meanwhile(f"{args.what} ..."):
+        try:
+            made = kinds.make(table, Path())
+        except InputError as error:
+            raise InputError(f"--{error}" if args.what in MADE else f"{args.what}: {error}") from None
+        found = inspection.inspect(made, materials_of)
     if out:
-        meshfile.write(out, made.points, [made.cells])
+        try:
+            meshfile.write(out, made.points, [made.cells])
+        except OSError as error:
+            raise InputError(f"--out must be a file that can be written, not {out}: {error.strerror}") from None
     print(json.dumps(found, indent=1) if args.json else "\n".join(inspection.lines(args.what, found)))
     return 0
 

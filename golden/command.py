@@ -1,7 +1,8 @@
-"""What the project's command lines share: one line an error, and the exit codes."""
+"""What the project's command lines share: one line an error, the exit codes, and a word while something takes long."""
 
 import argparse
 import sys
+from contextlib import contextmanager
 
 from golden.errors import InputError, InternalError
 
@@ -33,3 +34,16 @@ def execute(parser: Parser, arguments=None) -> int:
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return 130
+
+
+@contextmanager
+def said_meanwhile(text: str):
+    """A line on the terminal, gone when it's done; nothing where nobody watches."""
+    watched = sys.stderr.isatty()
+    if watched:
+        print(text, end="\r", file=sys.stderr, flush=True)
+    try:
+        yield
+    finally:
+        if watched:
+            print(" " * len(text), end="\r", file=sys.stderr, flush=True)

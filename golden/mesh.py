@@ -9,11 +9,13 @@ from math import isfinite
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
 from golden import bodies, grids, meshfile
 from golden.errors import InputError
 from golden.quality import radius_ratio, signed_measure
 
+SAME = 1e-6  # of the object's size: points that are nearer to each other are at the same place
 FLAT = 1e-12  # a cell smaller than this part of its longest edge to the power of dim has no area or volume
 
 
@@ -41,8 +43,9 @@ class Mesh:
         if len(isolated):
             raise InputError(f"points must all belong to a cell, but point {isolated[0]} does not: remove it "
                              f"({len(isolated)} of {n} are isolated)")
-        if pair := _duplicate(self.points):
-            raise InputError(f"points must all differ, but {pair[0]} and {pair[1]} are at the same place: "
+        if pairs := KDTree(self.points).query_pairs(SAME * self.size):
+            i, j = min(pairs)
+            raise InputError(f"points must all differ, but {i} and {j} are at the same place: "
                              "merge them (an edge of zero length has no direction)")
 
     @property

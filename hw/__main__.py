@@ -3,10 +3,9 @@
 import argparse
 import re
 import sys
-from contextlib import contextmanager
 from pathlib import Path
 
-from golden.command import Parser, execute
+from golden.command import Parser, execute, said_meanwhile
 from golden.errors import InputError
 from golden.formats import Formats
 
@@ -129,19 +128,6 @@ def docs(args) -> int:
         path.write_text(new, encoding="utf-8")
     print(f"{path.name}: {'up to date' if new == text else 'tables written anew'}")
     return 0
-
-
-@contextmanager
-def said_meanwhile(text: str):
-    """A line on the terminal, gone when it's done; nothing where nobody watches."""
-    watched = sys.stderr.isatty()
-    if watched:
-        print(text, end="\r", file=sys.stderr, flush=True)
-    try:
-        yield
-    finally:
-        if watched:
-            print(" " * len(text), end="\r", file=sys.stderr, flush=True)
 
 
 def main(arguments=None) -> int:

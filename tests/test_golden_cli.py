@@ -1,5 +1,7 @@
 """python -m golden mesh: what it says of a mesh, what it makes, what it refuses."""
+import errno
 import json
+import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -10,7 +12,7 @@ import pytest
 from scene_text import GEL, SCENE, TWO, changed, written
 
 from environment import ROOT
-from golden import capacity, inspection, mesh, scene, stability
+from golden import capacity, inspection, mesh, meshfile, scene, stability
 from golden.__main__ import main
 from golden.errors import InputError
 from golden.formats import Formats
@@ -185,6 +187,23 @@ def test_a_file_that_is_there_stays(tmp_path, capsys):
     (tmp_path / "folder.vtu").mkdir()
     refused([*RING, "--out", str(tmp_path / "folder.vtu"), "--force"],
             f"--out must be a new file, not {tmp_path / 'folder.vtu'}, which is there: choose another", capsys)
+
+
+def test_a_file_that_cannot_be_written(tmp_path, capsys, monkeypatch):
+    def full(*args):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(meshfile, "write", full)
+    out = tmp_path / "ring.vtu"
+    refused([*RING, "--out", str(out)], f"--out must be a file that can be written, not {out}: "
+            "No space left on device", capsys)
+
+
+def test_a_word_on_the_terminal_while_it_takes_long(monkeypatch, capsys):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert main(["mesh", *RING]) == 0
+    out, err = capsys.readouterr()
+    assert err == "ring ...\r        \r" and out.startswith("ring: ")
 
 
 def test_the_command_itself():

@@ -116,6 +116,10 @@ def test_parts_are_found():
     (lambda: mesh.from_cells(SQUARE[[0, 1, 2, 1, 3, 2]], [[0, 1, 2], [3, 4, 5]]),
      "points must all differ, but 1 and 3 are at the same place: "
      "merge them (an edge of zero length has no direction)"),
+    (lambda: mesh.from_cells(np.float32(SQUARE[[0, 1, 2, 1, 3, 2]] / 3) + np.eye(6, 2, -4) * 1e-7,
+                             [[0, 1, 2], [3, 4, 5]]),  # a seam that another program has rounded
+     "points must all differ, but 1 and 3 are at the same place: "
+     "merge them (an edge of zero length has no direction)"),
     (lambda: mesh.from_cells(SQUARE * np.nan, TRIANGLES),
      "points must be finite coordinates in 2 or 3 dimensions"),
     (lambda: mesh.from_cells(SQUARE[:, :1], TRIANGLES),

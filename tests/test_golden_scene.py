@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 from scene_text import BOTTOM, GEL, MESH, SCENE, TWO, changed, written
 
+from golden import mesh
 from golden.scene import load
 
 
@@ -83,6 +84,14 @@ def test_material_by_element_and_first_on_shared_edges(tmp_path):
     swapped = load(written(tmp_path, changed(SCENE, GEL, f"[materials.clay]{second}\n{first}")))
     assert [material.name for material in swapped.materials] == ["clay", "gel"]
     np.testing.assert_array_equal(swapped.edge_material, ends.min(axis=1) < 0.1 - 1e-9)  # the seam is clay
+
+
+def test_irregular_meshes_by_kind(tmp_path):
+    text = changed(SCENE, MESH, 'mesh = { kind = "ring", outer = 0.05, inner = 0.03, edge = 0.01, seed = 3 }')
+    scene = load(written(tmp_path, text[:text.index("[[phases]]")] + "[[phases]]\nduration = 0.01\n"))
+    ring = mesh.filled("ring", outer=0.05, inner=0.03, edge=0.01, seed=3)
+    np.testing.assert_array_equal(scene.mesh.points, ring.points)
+    np.testing.assert_array_equal(scene.mesh.cells, ring.cells)
 
 
 def test_one_material_has_what_the_others_leave(tmp_path):
