@@ -46,7 +46,6 @@ def parser() -> Parser:
                        help="folder for PNG, SVG and GIF of each, and figures.json (build/figures)")
     drawn.add_argument("--backend", default="fixed", choices=("fixed", "rtl"),
                        help="the circuit's integer model, or its Verilog under Verilator: the same bits (fixed)")
-    drawn.add_argument("--json", action="store_true", help="print the contents of figures.json instead of a table")
     drawn.set_defaults(run=figures)
 
     kept = commands.add_parser("export", help="write a run in a form that other programs read")
@@ -80,6 +79,10 @@ def parser() -> Parser:
                              help=f"edge processors of the circuit ({only}{LANES})")
         command.add_argument("--updates", type=whole, metavar="M",
                              help=f"nodes that the circuit updates in a cycle, 1 or 2 ({only}{UPDATES})")
+    for command, what in ((one, "summary.json instead of a line"), (many, "compare.json instead of a table"),
+                          (page, "compare.json instead of a table"), (drawn, "figures.json instead of a table"),
+                          (speed, "FILE instead of tables")):
+        command.add_argument("--json", action="store_true", help=f"print the contents of {what}")
     for command in (one, many, page, drawn, kept):
         command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
     return main
@@ -131,11 +134,19 @@ def run(args) -> int:
     with about(scene), terminal.steps(scene, args.backend) as shown:
         result = run(scene, args.backend, **wanted, waves=args.waves and out / f"waves.{args.waves}", progress=shown)
     store.save(scene, result, out)
-    print(f"{scene.name}: {scene.steps} steps on {args.backend} in {result.seconds:.1f} s, "
-          f"{len(scene.frames)} frames in {out / 'trajectory.npz'}")
+    if not _printed(args, out / store.SUMMARY):
+        print(f"{scene.name}: {scene.steps} steps on {args.backend} in {result.seconds:.1f} s, "
+              f"{len(scene.frames)} frames in {out / store.TRAJECTORY}")
     if result.faults:
         print(f"error: saturated: {', '.join(result.faults)}", file=sys.stderr)
     return 1 if result.faults else 0
+
+
+def _printed(args, path: Path) -> bool:
+    """Whether the file was to be printed, and is."""
+    if args.json:
+        print(path.read_text(encoding="utf-8"), end="")
+    return args.json
 
 
 def _circuit(args):
@@ -159,7 +170,7 @@ def compare(args) -> int:
     out = folder.claim(args.out, args.force)
     with terminal.progress(loaded, STAGES) as shown:
         sections = batch.over_scenes(partial(report.section, **wanted), loaded, shown)
-    return _reported(sections, out)
+    return _reported(args, sections, out)
 
 
 def report(args) -> int:
@@ -171,17 +182,18 @@ def report(args) -> int:
     loaded, folders = [scene for scene, _ in groups], {scene.name: runs for scene, runs in groups}
     with terminal.progress(loaded, (STAGES[0], STAGES[-1])) as shown:
         sections = batch.over_scenes(partial(report.of_runs, folders=folders), loaded, shown)
-    return _reported(sections, out)
+    return _reported(args, sections, out)
 
 
-def _reported(sections, out: Path) -> int:
+def _reported(args, sections, out: Path) -> int:
     """Write the page and print its table. 1 if a scene does not pass, and why."""
     from sim import report, terminal
     from sim.compare import shortcomings
 
     entries = [section.entry for section in sections]
     report.write(sections, out)
-    terminal.print_table(entries)
+    if not _printed(args, out / report.DATA):
+        terminal.print_table(entries)
     wrong = [(entry["scene"], reason) for entry in entries for reason in shortcomings(entry)]
     for name, reason in wrong:
         print(f"error: {name}: {reason}", file=sys.stderr)
@@ -202,9 +214,7 @@ def figures(args) -> int:
         drawn = {name: make.draw(name, pairs, out, shown and partial(shown, number))
                  for number, name in enumerate(names)}
     make.save(entries | drawn, out)
-    if args.json:
-        print((out / make.DATA).read_text(), end="")
-    else:
+    if not _printed(args, out / make.DATA):
         table.print_readings(drawn)
         print(f"\nPNG, SVG and GIF of each figure are in {out}, the numbers in {out / make.DATA}")
     wrong = make.shortcomings(names, pairs)
@@ -254,7 +264,8 @@ def bench(args) -> int:
         clock = args.clock or bench.CLOCK
         entries = bench.bench(args.meshes or MESHES, cycles.cycles_per_step, software, clock=clock)
     bench.save(entries, out)
-    table.print_tables(entries)
+    if not _printed(args, out):
+        table.print_tables(entries)
     return 0
 
 

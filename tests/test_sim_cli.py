@@ -120,6 +120,15 @@ def test_compare(circuit, scene, tmp_path, capsys, monkeypatch):
     assert max(map(len, said)) <= 105 and len(said) <= 12
 
 
+@pytest.mark.parametrize(("command", "file"), [
+    (["run", "--backend", "fixed"], "summary.json"), (["compare"], "compare.json"),
+])
+def test_scripts_get_the_file_itself(command, file, circuit, scene, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(batch, "cores", lambda: 1)
+    assert main([*command, scene, "--json", "--out", str(tmp_path / "out")]) == 0
+    assert capsys.readouterr() == ((tmp_path / "out" / file).read_text(), "")
+
+
 def test_report(circuit, scene, tmp_path, capsys, monkeypatch):
     """The page of runs that are there is that of a comparison, but for how long it took."""
     monkeypatch.setattr(batch, "cores", lambda: 1)

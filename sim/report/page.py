@@ -18,6 +18,7 @@ from sim.errors import about
 from sim.report import pack, style
 
 FOLDER = Path(__file__).parent
+DATA = "compare.json"
 BACKENDS = {"float": "float64", "fixed": "integer model", "rtl": "Verilog in simulation", "board": "board"}
 SCRIPTS = "data.js", "camera.js", "paint.js", "viewer.js", "chart.js", "ranges.js", "page.js"
 SAMPLES = 33  # of a colour scale
@@ -66,7 +67,7 @@ def write(sections: list[Section], folder: Path) -> None:
         script="\n".join((FOLDER / name).read_text() for name in SCRIPTS),
         data=[inlined(section.drawn | {"ranges": section.entry["ranges"]}) for section in sections],
         colours=inlined(colours()))
-    write_text(folder / "compare.json", json.dumps(entries, indent=2, allow_nan=False) + "\n")
+    write_text(folder / DATA, json.dumps(entries, indent=2, allow_nan=False) + "\n")
     write_text(folder / "index.html", page)
 
 
