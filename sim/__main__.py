@@ -69,7 +69,7 @@ def parser() -> Parser:
     speed = commands.add_parser("bench", help="time the circuit's step and that of software on this machine")
     speed.add_argument("--meshes", nargs="+", metavar="MESH", help="nodes along each axis, as 9x9 or 5x5x5")
     speed.add_argument("--steps", type=whole, default=10_000, metavar="N", help="steps of the software to time (10000)")
-    speed.add_argument("--clock", type=megahertz, metavar="MHZ", help="the circuit's clock (125)")
+    speed.add_argument("--clock", type=megahertz, metavar="MHZ", help="the circuit's clock (that timed for the ULX3S-85F)")
     speed.add_argument("--out", default="build/bench.json", metavar="FILE",
                        help="file for the figures (build/bench.json)")
     speed.set_defaults(run=bench)
@@ -252,7 +252,7 @@ def serve(args) -> int:
 
 
 def bench(args) -> int:
-    from sim import cycles
+    from sim import cycles, steptime
     from sim.speed import bench, table, timing  # Numba is slow to load
     from sim.speed.meshes import MESHES
 
@@ -261,7 +261,7 @@ def bench(args) -> int:
         def software(scene):
             return timing.software(scene, args.steps, lambda name: shown(f"{scene.name}: {timing.SOFTWARE[name]}"))
 
-        clock = args.clock or bench.CLOCK
+        clock = args.clock or steptime.clock(bench.BOARD)
         entries = bench.bench(args.meshes or MESHES, cycles.cycles_per_step, software, clock=clock)
     bench.save(entries, out)
     if not _printed(args, out):

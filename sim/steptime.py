@@ -35,6 +35,16 @@ def on_boards(scene: Scene, folder=None) -> list[dict]:
     return found
 
 
+def clock(board: str, folder=None) -> float:
+    """MHz: that of a board's timing result. Raises `InputError` if there is none."""
+    from hw.timing import result as timing
+
+    path = (folder or timing.KEPT) / f"{board}.json"
+    if not path.exists():
+        raise InputError(f"--clock must be given, as {board} has not been timed (make timing BOARD={board})")
+    return timing.read(path, timing.Result).clock_mhz
+
+
 def _timed(scene: Scene, timing) -> dict:
     from hw.parameters import Parameters
     from sim.cycles import Wavefront

@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from golden.errors import InputError
-from sim import cycles
+from sim import cycles, steptime
 from sim.__main__ import main
 from sim.speed import bench, meshes, table, timing
 
@@ -56,9 +56,10 @@ def test_writes_entries_and_shows_two_tables(quick, tmp_path, capsys):
     assert "steps: 7," in said and "warning" not in said
 
 
-def test_all_meshes_fit_on_a_screen(quick, tmp_path, capsys):
+def test_all_meshes_fit_on_a_screen_with_the_clock_of_a_timed_board(quick, tmp_path, capsys):
     assert main(["bench", "--out", str(tmp_path / "bench.json")]) == 0
     lines = capsys.readouterr().out.splitlines()
+    assert f"at {steptime.clock('ulx3s-85f'):g} MHz." in lines[1]
     assert len(lines) < 50 and max(map(len, lines)) <= 120
     assert list(dict.fromkeys(line.split()[0] for line in lines[5:35])) == list(meshes.MESHES)
 

@@ -1,9 +1,11 @@
 """sim.steptime: how long a step takes, from a run's own count and on boards whose clock is known."""
 import json
+import re
 
 import pytest
 from sim_objects import block
 
+from golden.errors import InputError
 from golden.rk4 import RK4
 from hw import boards
 from hw.parameters import Parameters
@@ -40,6 +42,14 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     assert found == {"board": "ulx3s-85f", "timed": True, "lanes": 2, "updates": 1, "clock_mhz": 90.0, "fits": True,
                      "cycles_per_step": cycles, "step_us": cycles / 90.0,
                      "real_time": pytest.approx(scene.dt / (cycles / 90e6))}
+
+
+def test_the_clock_of_a_board_is_that_of_its_result(tmp_path):
+    (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING))
+    assert steptime.clock("ulx3s-85f", tmp_path) == 90.0
+    with pytest.raises(InputError, match=re.escape("--clock must be given, as ulx3s-25f has not been timed "
+                                                   "(make timing BOARD=ulx3s-25f)")):
+        steptime.clock("ulx3s-25f", tmp_path)
 
 
 def test_an_object_that_is_too_large_does_not_fit(tmp_path):
