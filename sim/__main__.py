@@ -69,7 +69,7 @@ def parser() -> Parser:
     speed = commands.add_parser("bench", help="time the circuit's step and that of software on this machine")
     speed.add_argument("--meshes", nargs="+", metavar="MESH", help="nodes along each axis, as 9x9 or 5x5x5")
     speed.add_argument("--steps", type=whole, default=10_000, metavar="N", help="steps of the software to time (10000)")
-    speed.add_argument("--clock", type=megahertz, metavar="MHZ", help="the circuit's clock (that timed for the ULX3S-85F)")
+    speed.add_argument("--clock", type=megahertz, metavar="MHZ", help="the circuit's clock (timed: ULX3S-85F)")
     speed.add_argument("--out", default="build/bench.json", metavar="FILE",
                        help="file for the figures (build/bench.json)")
     speed.set_defaults(run=bench)
