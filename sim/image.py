@@ -124,14 +124,19 @@ def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray
 
 
 def consisting(materials: tuple[Material, ...], units: Units, formats: Formats):
-    """An image's ``materials``, and its ``damper``: at least one table, of zeros, where no damper needs one."""
+    """An image's ``materials`` and ``damper``."""
     fields, tables = [], []
     for number, material in enumerate(materials):
         record, table = coefficients(material, number, units, formats, len(tables))
         fields.append(record)
         tables += [table.words] if table else []
+    return fields, stack(tables, formats)
+
+
+def stack(tables: list[dict[str, np.ndarray]], formats: Formats) -> dict[str, np.ndarray]:
+    """(T, segments) for each field; at least one table, of zeros, where no damper needs one."""
     blank = {name: np.zeros(1 << formats.damper_index.width, np.int64) for name in records.damper_word(formats)}
-    return fields, {name: np.stack([t[name] for t in tables or [blank]]) for name in blank}
+    return {name: np.stack([t[name] for t in tables or [blank]]) for name in blank}
 
 
 def natural_length(image: Image) -> np.ndarray:

@@ -119,7 +119,7 @@ REFUSED = [
     ("duration = 0.005", "duration = 4e-5",
      "phases[1].duration must be at least one step of dt = 0.0001, not 4e-05"),
     ("fixed = [", "fixd = [",
-     "phases[0].fixd must not be there: the keys known here are duration, name, fixed, driven, loads"),
+     "phases[0].fixd must not be there: the keys known here are duration, name, fixed, driven, loads, materials"),
     (f"fixed = [{BOTTOM}]", "fixed = { nodes = [1] }", "phases[0].fixed must be a list, not a table"),
     (BOTTOM, "{ }", "phases[0].fixed[0] must have one of box, plane, ball, nodes, not none"),
     (BOTTOM, BOTTOM[:-1] + ", nodes = [1] }",
