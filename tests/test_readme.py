@@ -73,6 +73,24 @@ def test_commands_parse(package, parser):
         parser().parse_args(shlex.split(line)[3:])
 
 
+ELSEWHERE = "sim figures", "sim serve", "socket://"
+"""What takes minutes, or two terminals: tests/test_sim_figures_make.py, tests/test_sim_link_board.py."""
+
+
+def test_commands_run(tmp_path, monkeypatch):
+    """In this order, with the scene that stands above them; ``part.msh`` is anybody's mesh."""
+    monkeypatch.chdir(tmp_path)
+    (text,) = blocks("toml")
+    Path("my.toml").write_text(text)
+    assert golden.main(shlex.split("mesh disc --radius 50 --edge 10 --out part.msh")) == 0
+    lines = re.findall(r"^`?\.venv/bin/python -m ([^`\n]+)", README, re.MULTILINE)
+    chosen = [line for line in lines if not any(word in line for word in ELSEWHERE)]
+    for line in chosen:
+        package, *arguments = shlex.split(line)
+        assert {"sim": sim, "golden": golden, "hw": cli}[package].main(arguments) == 0, line
+    assert len(chosen) >= 7 and Path("build/my-page/index.html").exists() and Path("build/my-run/vtu/run.pvd").exists()
+
+
 def test_make_targets_exist():
     named = set(re.findall(r"(?:`|^)make ([a-z]+)", README, re.MULTILINE))
     assert {"test", "verilog", "lint", "help"} <= named <= documents.targets()
