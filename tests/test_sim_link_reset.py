@@ -12,7 +12,7 @@ from sim.link.board import Board
 TIMEOUT = 2e-3
 """s of the circuit's time: more than a window of these commands and their answers takes."""
 WITHIN = 60_000
-"""Cycles that the commands take, of which one is that of the reset."""
+"""Cycles in one of which the reset comes: commands and answers go to and fro for as long."""
 
 
 class Reset(Exception):
@@ -27,7 +27,7 @@ class Line(NoisyLine):
     def read(self, seconds):
         left = self.at - self._circuit.clock
         if left > self.SLICE:
-            return super().read(min(seconds, left / CLOCK_HZ))
+            return super().read(min(seconds, (left - self.SLICE) / CLOCK_HZ))
         data, self._waiting, self.at = self._waiting, b"", inf
         self._circuit.run(data, left)
         self._circuit.reset()

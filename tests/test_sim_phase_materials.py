@@ -12,7 +12,7 @@ from golden import scene as scenes
 from golden.errors import InputError
 from golden.model import Model
 from sim import energy, ranges
-from sim.compare import compare
+from sim.compare import BOUND, compare
 from sim.run import run
 
 PHASE = 'duration = 0.005\n'
@@ -96,7 +96,7 @@ def test_the_force_does_not_jump(other):
 def test_float_and_integers_become_the_same(names):
     scene = switching(*names)
     float64, fixed = run(scene, "float").trajectory, run(scene, "fixed").trajectory
-    assert np.linalg.norm(fixed.x - float64.x, axis=2).max() / scene.size < (5e-5 if scene.force_dependent else 1e-5)
+    assert np.linalg.norm(fixed.x - float64.x, axis=2).max() / scene.size < BOUND[scene.force_dependent]
     unswitched = run(block(names[0], steps=(60, 60, 120), every=1), "float").trajectory
     assert np.abs(unswitched.x - float64.x).max() / scene.size > 1e-3  # there is something to see
 

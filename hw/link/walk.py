@@ -85,7 +85,9 @@ class Walker(wiring.Component):
             self._through.eq(self._position == self.length),
             self._short.eq(self._position + ITEM_BYTES > self.length),
             self._too_many.eq(self._given > ITEMS_MOST),
-            self._extent.eq(sum(self._segment["count"] << n for n in range(3) if ITEM_BYTES >> n & 1)),  # no multiplier
+            self._extent.eq(  # without a multiplier
+                sum(self._segment["count"] << n for n in range(ITEM_BYTES.bit_length()) if ITEM_BYTES >> n & 1)
+            ),
             self._runs.eq(address == _control(Control.RUN)),
             self._stops.eq(address == _control(Control.STOP)),
         ]
