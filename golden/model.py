@@ -45,9 +45,7 @@ class Model:
 
     def become(self, materials: tuple[Material, ...]) -> None:
         """Consist of other materials from here on, one for each there was, without a jump in force: `golden.switch`."""
-        d = self.x[self.j] - self.x[self.i]
-        length = norm(d)
-        rate = dot(d / length[:, None], self.v[self.j] - self.v[self.i])
+        _, length, rate = self.motion(self.x, self.v)
         for number, (old, new) in enumerate(zip(self.scene.materials, materials, strict=True)):
             here = self.scene.edge_material == number
             if old != new:
@@ -77,12 +75,17 @@ class Model:
             sigma[self.varying], rho[self.varying] = solve_damper(*self.damper, g[self.varying])
         return -rho * g, ((1 - a) * ldot - sigma * g) / length
 
-    def along(self, x, v, a):
-        """Of each edge its direction (E, dim), the force along it (E,) and da/dt (E,), as `edge_law` has them."""
+    def motion(self, x, v):
+        """Of each edge its direction (E, dim), its length (E,) and dl/dt (E,)."""
         d = x[self.j] - x[self.i]
         length = norm(d)
         u = d / length[:, None]
-        return u, *self.edge_law(length, dot(u, v[self.j] - v[self.i]), a)
+        return u, length, dot(u, v[self.j] - v[self.i])
+
+    def along(self, x, v, a):
+        """Of each edge its direction (E, dim), the force along it (E,) and da/dt (E,), as `edge_law` has them."""
+        u, length, rate = self.motion(x, v)
+        return u, *self.edge_law(length, rate, a)
 
     def edges(self, x, v, a):
         """Sum of the edges' forces on each node (N, dim), and da/dt (E,)."""

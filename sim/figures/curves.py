@@ -129,7 +129,11 @@ def film(pairs: list[Pair]) -> Film:
                          (2.17, f"block: {len(pair.scene.mesh.edges)} such edges, coloured by strain")):
         figure.text(0.1 / 7.2, height / 4.3, text, fontsize=8)
     clock = figure.text(4.5 / 7.2, 0.08 / 4.3, "", fontsize=9)
+    return Film(figure, moving(bodies, dots, clock), *SHOWN)
 
+
+def moving(bodies, dots, clock) -> Callable[[float], None]:
+    """What makes drawings, each with its pair of runs, dots on curves and a clock show a time since the release (s)."""
     def show(t: float) -> None:
         for pair, body in bodies:
             body.show(pair.frame(t + pair.circuit.trajectory.t[pair.released]))
@@ -137,4 +141,4 @@ def film(pairs: list[Pair]) -> Film:
             dot.show(t)
         clock.set_text(paper.minus(f"{t:+.2f} s"))
 
-    return Film(figure, show, *SHOWN)
+    return show

@@ -97,15 +97,7 @@ def film(pairs: list[Pair]) -> Film:
     over.set_xlabel("time since the release (s)", labelpad=1)
     STRAIN.bar(figure, paper.place(figure, 6.55, 0.9, 0.1, 2.3))
     clock = figure.text(5.1 / 7.2, 0.08 / 4.0, "", fontsize=9)
-
-    def show(t: float) -> None:
-        for pair, body in bodies:
-            body.show(pair.frame(t + pair.circuit.trajectory.t[pair.released]))
-        for dot in dots:
-            dot.show(t)
-        clock.set_text(paper.minus(f"{t:+.2f} s"))
-
-    return Film(figure, show, -0.2, 0.3)
+    return Film(figure, curves.moving(bodies, dots, clock), -0.2, 0.3)
 
 
 def bulge(pair: Pair) -> Callable[[Trajectory], np.ndarray]:
