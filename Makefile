@@ -13,7 +13,7 @@ family := $(if $(FAMILY),--family $(FAMILY))
 # The tests of a file go to one worker: what they share is built once.
 pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
 capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
-              $(if $(MATERIALS),--materials $(MATERIALS)) $(if $(TABLES),--tables $(TABLES))
+              $(if $(MATERIALS),--materials $(MATERIALS)) $(if $(TABLES),--tables $(TABLES)) $(if $(AXES),--axes $(AXES))
 
 .DEFAULT_GOAL := compare
 .NOTPARALLEL:
@@ -26,7 +26,7 @@ compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on flo
 figures: environment ## draw the paper's figures from runs of the circuit: PNG, SVG, GIF and their numbers in build/figures
 	@$(run) -m sim figures --out build/figures
 
-verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES= choose its size, FAMILY= its hard blocks
+verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES=, AXES= choose its size, FAMILY= its hard blocks
 	@$(run) -m hw verilog $(lanes) $(updates) $(capacities) $(family) --out build/verilog
 
 timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3", JOBS=

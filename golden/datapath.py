@@ -5,7 +5,7 @@ from types import SimpleNamespace
 from . import records
 from .edge import edge
 from .formats import Formats
-from .graph import Graph, Reader
+from .graph import AXES, IN_TURN, Graph, Reader
 from .node import node
 from .qformat import BIT
 from .rk4 import RK4
@@ -32,14 +32,19 @@ def edge_graph(fmt: Formats, tables: int) -> Graph:
     return graph
 
 
-def node_graph(fmt: Formats, banks: int) -> Graph:
+def node_graph(fmt: Formats, banks: int, axes: tuple[str, ...] = AXES) -> Graph:
     """`golden.node.node` as a graph, for ``banks`` accumulators a node.
+
+    With the axes `golden.graph.IN_TURN` the components of a node's vectors come one after the other; ``first_turn`` is
+    1 with the first of them.
 
     Inputs: ``stage_*``, ``velocity_shift``, ``pull<bank>_*``, ``load_*``, ``inverse_mass_*``, ``x_base_*``,
     ``v_base_*``, ``v_*``, ``x_total_*``, ``v_total_*``. Outputs: ``force_*``, ``x_*``, ``v_*``, ``x_base_next_*``,
     ``v_base_next_*``, ``x_total_*``, ``v_total_*``.
     """
-    graph = Graph()
+    graph = Graph(axes=axes)
+    if axes == IN_TURN:
+        graph.input("first_turn", BIT)
     stage, shift = _stage(graph), graph.input("velocity_shift", fmt.exponent)
     pulls = [graph.vector(f"pull{bank}", fmt.accumulator) for bank in range(banks)]
     load = graph.vector("load", fmt.accumulator)

@@ -7,7 +7,11 @@ are made from it, so neither repeats an equation.
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 
-from .qformat import BIT, Q, count, smallest, total
+from .qformat import BIT, Q, count, smallest, total, unsigned
+
+AXES = ("x", "y", "z")
+IN_TURN = ("turn",)
+"""The one component that there is at a time, where a vector's components come one after the other."""
 
 
 @dataclass(eq=False, repr=False)
@@ -77,6 +81,9 @@ class Node:
 
     @staticmethod
     def lead(vector, most):
+        graph = vector[0].graph
+        if graph.axes == IN_TURN:
+            vector = [graph.gather(vector[0])]
         return vector[0]._make("lead", count(most), *vector, detail=most)
 
     def to(self, fmt, *, left=None, right=None, cut=False):
@@ -96,12 +103,15 @@ class Graph:
     faults : list of (str, Node)
         Bits that report a fault of that name, besides the saturation of every ``round`` and ``shift_right`` to a
         format with a name.
+    axes : tuple of str
+        What the names of a vector's components end in: `AXES`, or `IN_TURN` where they come one after the other.
     """
 
     nodes: list[Node] = field(default_factory=list)
     inputs: dict[str, Node] = field(default_factory=dict)
     outputs: dict[str, Node] = field(default_factory=dict)
     faults: list[tuple[str, Node]] = field(default_factory=list)
+    axes: tuple[str, ...] = AXES
 
     def add(self, kind, fmt, operands=(), detail=None, name="") -> Node:
         node = Node(self, kind, fmt, tuple(operands), detail, name)
@@ -119,7 +129,12 @@ class Graph:
         return SimpleNamespace(**{name: self.input(f"{prefix}_{name}", q) for name, q in formats.items()})
 
     def vector(self, name: str, fmt: Q) -> list[Node]:
-        return [self.input(f"{name}_{axis}", fmt) for axis in AXES]
+        return [self.input(f"{name}_{axis}", fmt) for axis in self.axes]
+
+    def gather(self, x: Node) -> Node:
+        """The bits that the sizes of all components have between them, for a component that comes in its turn."""
+        size = unsigned(x.fmt.int_bits - x.fmt.signed, x.fmt.frac_bits)
+        return self.add("gather", size, (x, self.inputs["first_turn"]))
 
     def read(self, table: str, word: dict[str, Q], *index: Node) -> SimpleNamespace:
         """The word of ``table`` at ``index``, as a namespace of its fields."""
@@ -134,10 +149,10 @@ class Graph:
         that is called like an input is its next value.
         """
         for name, value in values.items():
-            for label, node in flatten(name, value):
+            for label, node in flatten(name, value, self.axes):
                 if isinstance(node, Node) and not node.name:
                     node.name = f"{label}_next" if label in self.inputs else label
-        self.keep({label: node for name in outputs for label, node in flatten(name, values[name])})
+        self.keep({label: node for name in outputs for label, node in flatten(name, values[name], self.axes)})
         self._name_the_rest()
 
     def keep(self, outputs: dict[str, Node]):
@@ -165,12 +180,11 @@ class Graph:
                 taken.add(operand.name)
 
 
-AXES = ("x", "y", "z")
 
 
-def flatten(name, value):
+def flatten(name, value, axes=AXES):
     if isinstance(value, list):
-        return [(f"{name}_{axis}", item) for axis, item in zip(AXES, value, strict=False)]
+        return [(f"{name}_{axis}", item) for axis, item in zip(axes, value, strict=False)]
     return [(name, value)]
 
 

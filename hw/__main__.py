@@ -28,6 +28,7 @@ CAPACITIES = {
     "edges": "edges it has room for",
     "materials": "materials it has room for",
     "tables": "tables of force-dependent dampers it has room for",
+    "axes": "axes of a node updated per cycle, 3 or 1",
 }
 
 

@@ -1,6 +1,8 @@
 """The host's access to the memories of lanes, node updaters and lists."""
 
-from amaranth.hdl import Cat, Module, Signal
+from amaranth.hdl import Array, Cat, Module, Signal
+
+from golden.graph import AXES
 
 from .choice import choose
 from .delay import DelayLines
@@ -46,11 +48,21 @@ class Access:
                 updater.host_write_load.eq(self._node_strobes(NODE_LOAD, number)),
                 updater.host_write_mass.eq(self._node_strobes(["inverse_mass"], number)),
             ]
+            if self._parameters.turns > 1:
+                self._m.d.comb += updater.host_axis.eq(self._axis())
             reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
             reads += [updater.host_mass, entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
             nodes.append(self._chosen(reads, f"node{number}"))
         column = self._parameters.node_place(self._host.index)[1]
         self._m.d.comb += self._host.node_word.eq(self._then_chosen(nodes, column, "node"))
+
+    def _axis(self):
+        """That of a node's word, beside its index."""
+        suffixes = (word.rpartition("_")[2] for word in Map(self._parameters).words(Region.NODE))
+        numbers = Array([AXES.index(suffix) if suffix in AXES else 0 for suffix in suffixes])
+        axis = Signal(range(len(AXES)), name="host_axis")
+        self._m.d.sync += axis.eq(numbers[self._host.word])
+        return axis
 
     def _node_strobes(self, names, number):
         words = Map(self._parameters).words(Region.NODE)

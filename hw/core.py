@@ -34,7 +34,7 @@ def row_latency(parameters: Parameters) -> int:
 
 def datapaths(p: Parameters) -> tuple[EdgeDatapath, NodeDatapath]:
     """Of an edge and of a node."""
-    return EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost)
+    return EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost, p.turns)
 
 
 def faults(edge: EdgeDatapath, node: NodeDatapath) -> list[str]:
@@ -78,7 +78,7 @@ class Core(wiring.Component):
         m = Module()
         self._m, self._lines, p = m, DelayLines(m), self.parameters
         m.submodules.host = self._host = HostPort(Map(p), len(self.faults))
-        m.submodules.sequencer = self._sequencer = Sequencer()
+        m.submodules.sequencer = self._sequencer = Sequencer(turns=p.turns)
         self._updaters = []
         for number in range(p.updates):
             m.submodules[f"updater{number}"] = updater = NodeUpdater(p, self.node_datapath)

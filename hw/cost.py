@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
-from golden.graph import AXES, Node
+from golden.graph import AXES, IN_TURN, Node
 
+from .blocks.gather import GATHERED
 from .blocks.memory import READ_LATENCY
 from .blocks.narrow import levels
 from .operations import step_count
@@ -36,6 +37,7 @@ class Cost:
     less: int = 1
     select: int = 0
     sum: int = 1
+    gather: int = GATHERED
     lead: int = 2
     shift_left: int = 1
     round: int = 0
@@ -47,7 +49,7 @@ class Cost:
         """Cycles from a node's operands to its value."""
         registers = getattr(self, node.kind)
         vector, _, axis = node.name.rpartition("_")
-        more = (vector if axis in AXES else node.name) in self.more
+        more = (vector if axis in (*AXES, *IN_TURN) else node.name) in self.more
         return (registers * step_count(node) if node.kind == "sum" else registers) + more
 
     def narrow_product(self, node: Node) -> bool:

@@ -29,6 +29,7 @@ class Latencies:
     def of(cls, p: Parameters) -> "Latencies":
         edge, node = datapaths(p)
         rows, nodes = (HANDOVER + fetch.latency(data) + FRONT_LATENCY + 1 for data in (row_latency(p), LISTED))
+        nodes += p.turns > 1  # the first of them doesn't go on its way to the front
         return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + COPIED + 1 + FRONT_LATENCY, rows, nodes)
 
 

@@ -54,6 +54,7 @@ def parameters(p: Parameters) -> dict:
         "rows": p.rows,
         "materials": p.materials,
         "tables": p.tables,
+        "axes": p.axes,
         "operand": p.formats.operand,
         "state": p.formats.state,
         "family": p.family,

@@ -79,11 +79,16 @@ def lead(wire, node, *vector):
     """Leading zeros of the OR of all magnitudes, first of groups of bits."""
     magnitude = Const(0)
     for x in vector:
-        magnitude |= (x[:-1] ^ x[-1].replicate(len(x) - 1)) if x.shape().signed else x
+        magnitude |= size(x)
     magnitude = wire(magnitude)[-node.detail :]
     groups = [slice(max(0, low), low + GROUP) for low in range(node.detail - GROUP, -GROUP, -GROUP)]
     magnitude, some = yield magnitude, Cat(magnitude[group].any() for group in groups)
     yield (_leading_zeros([(bit, magnitude[group]) for bit, group in zip(some, groups, strict=True)]),)
+
+
+def size(x: Value) -> Value:
+    """What has the leading zeros of a number's size: its bits, those of a negative number inverted."""
+    return (x[:-1] ^ x[-1].replicate(len(x) - 1)) if x.shape().signed else x
 
 
 GROUP = 4

@@ -6,6 +6,7 @@ from amaranth.hdl import Const, Value
 
 from golden import records
 from golden.formats import Formats
+from golden.graph import AXES
 
 from .cost import Cost
 from .families import FAMILIES
@@ -23,6 +24,9 @@ class Parameters:
         Edge processors, 1 to 8.
     updates : int
         Nodes updated per cycle, 1 or 2: node updaters, each with its share of every memory of nodes.
+    axes : int
+        Axes of a node that an updater takes per cycle: 3, or 1, with which it is about a third as large and takes as
+        many cycles for a node.
     nodes, edges, materials, tables : int
         Capacity. Each lane holds ``edges / lanes`` edges, rounded up.
     formats : Formats
@@ -45,6 +49,7 @@ class Parameters:
     edges: int = 4096
     materials: int = 16
     tables: int = 4
+    axes: int = len(AXES)
     formats: Formats = field(default_factory=Formats)
     cost: Cost = field(default_factory=Cost)
     family: str = "generic"
@@ -57,17 +62,25 @@ class Parameters:
         "materials": (1, EDGE["material"].raw_max + 1),
         "tables": (1, 16),
     }
+    SIZES = (*RANGES, "axes")
 
     def __post_init__(self):
         for name, (low, high) in self.RANGES.items():
             value = getattr(self, name)
             if not isinstance(value, int) or not low <= value <= high:
                 raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
+        if not isinstance(self.axes, int) or self.axes not in (1, len(AXES)):
+            raise ValueError(f"axes must be 1 or {len(AXES)}, not {self.axes!r}")
         if self.family not in FAMILIES:
             raise ValueError(f"family must be {' or '.join(FAMILIES)}, not {self.family!r}")
         longest = max(records.width(record) for record in (EDGE, NODE))
         if self.formats.state < longest:
             raise ValueError(f"state must be at least {longest} bits, as a list's entry has, not {self.formats.state}")
+
+    @property
+    def turns(self) -> int:
+        """Cycles that an updater takes for a node."""
+        return len(AXES) // self.axes
 
     @property
     def rows(self) -> int:

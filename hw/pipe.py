@@ -6,11 +6,12 @@ from amaranth.hdl import Cat, Const, Module, Signal, Value
 
 from golden.graph import Node
 
+from .blocks.gather import Gather
 from .blocks.multiplier import Multiplier
 from .blocks.narrow import NarrowMultiplier
 from .blocks.shifter import ShiftStage
 from .delay import DelayLines
-from .operations import STEPS, field, never, shape, shift_count, step_count
+from .operations import STEPS, field, never, shape, shift_count, size, step_count
 from .schedule import WIRES, Schedule, behind_wires
 
 FAULT_LATENCY = 1
@@ -89,6 +90,8 @@ class Pipe:
             result = self._product(node, operands, done - start)
         elif node.kind == "read":
             result = self._tables[node.detail[0]](*operands)
+        elif node.kind == "gather":
+            result = self._gathered(node, *operands)
         else:
             result, *fault = self._steps(node, operands)
             if fault:
@@ -102,6 +105,11 @@ class Pipe:
         self._m.submodules[node.name] = multiplier = make(a.shape(), b.shape(), registers=registers, **how)
         self._m.d.comb += [multiplier.a.eq(a), multiplier.b.eq(b)]
         return multiplier.product
+
+    def _gathered(self, node, x, first):
+        self._m.submodules[node.name] = gather = Gather(width=node.fmt.width)
+        self._m.d.comb += [gather.i.eq(size(x)), gather.first.eq(first)]
+        return gather.o
 
     def _operand(self, node, number, start):
         """In the operation's first cycle. A count is made ready for its shift, with as many registers behind it, two at

@@ -1,6 +1,6 @@
 """The wavefront: which row of edges and which node may go next. No barrier between stages or steps."""
 
-from amaranth.hdl import Module, Mux, Signal
+from amaranth.hdl import Const, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -17,6 +17,12 @@ class Sequencer(wiring.Component):
     are all the synchronisation there is. A node's update needs only rows of its own stage, and a row only updates of
     the stage before: any order of the lists comes to its end. How far each of them has come in its stage is counted
     outside (`hw.progress`); here it is known which stage that is.
+
+    Parameters
+    ----------
+    step_bits : int
+    turns : int
+        Cycles from a node to the next, at least.
 
     Members
     -------
@@ -49,7 +55,8 @@ class Sequencer(wiring.Component):
         has gone.
     """
 
-    def __init__(self, *, step_bits: int = 32):
+    def __init__(self, *, step_bits: int = 32, turns: int = 1):
+        self._turns = turns
         super().__init__(
             {
                 "start": In(1),
@@ -101,11 +108,15 @@ class Sequencer(wiring.Component):
         nodes_end = nodes_over | node_turns & (node_stage == last_stage) & last_step["node"]
         far = (row_lead == 1) & ~row_turns | (row_lead == 0) & row_turns
         near = self.node_behind_rows & ~self.node_behind_last
+        node_ready = ~nodes_over & ((sum_lead != 0) | self.node_rows & ~self.node_last)
+        node_behind_ready = ~nodes_end & ((sum_lead > node_turns) | (sum_lead == node_turns) & near)
+        if self._turns > 1:  # it has its turns to wait for
+            node_ready, node_behind_ready = node_ready & self._rested(m), Const(0)
         m.d.comb += [
             self.row_ready.eq(~rows_over & ((row_lead == 0) | (row_lead == 1) & self.row_nodes)),
             self.row_behind_ready.eq(~rows_end & ((row_lead == 0) & ~row_turns | far & self.row_behind_nodes)),
-            self.node_ready.eq(~nodes_over & ((sum_lead != 0) | self.node_rows & ~self.node_last)),
-            self.node_behind_ready.eq(~nodes_end & ((sum_lead > node_turns) | (sum_lead == node_turns) & near)),
+            self.node_ready.eq(node_ready),
+            self.node_behind_ready.eq(node_behind_ready),
             self.node_waits.eq(self.busy & ~rows_over & self.row_valid & ~self.row_goes),
             self.list_waits.eq(self.busy & ~rows_over & ~self.row_valid),
             self.end_waits.eq(self.busy & rows_over),
@@ -156,3 +167,12 @@ class Sequencer(wiring.Component):
             m.d.sync += [signal.eq(0) for signal in (*stages, row_lead, sum_lead, rows_over, nodes_over)]
             m.d.sync += [stopping.eq(0), self.busy.eq(1), self.steps_done.eq(0)]
         return m
+
+    def _rested(self, m):
+        """Whether a node that is ready now goes when the one before has had its turns."""
+        rest = Signal(range(self._turns))
+        with m.If(self.node_goes):
+            m.d.sync += rest.eq(self._turns - 2)
+        with m.Elif(rest != 0):
+            m.d.sync += rest.eq(rest - 1)
+        return rest == 0

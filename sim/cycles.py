@@ -1,7 +1,8 @@
 """The cycles of a run, exactly as the circuit counts them, from the lists alone: nothing has to be built.
 
 An event is a cycle counted from the first of the run. Rows of edges and rows of nodes go in the order of their lists,
-one a cycle, so that each of them is at its place in the list plus the longest delay of those before it.
+one a cycle (nodes one in three, if their axes come one after the other), so that each of them is at its place in the
+list plus the longest delay of those before it.
 """
 
 import numpy as np
@@ -34,18 +35,19 @@ class Wavefront:
         program = Program(image, parameters)
         self.latencies = latencies or Latencies.of(parameters)
         self.rows, self.edges, self._lanes = program.rows, len(image.edges), parameters.lanes
+        self._turns = parameters.turns
         self._highest, self._need = program.highest(), program.need()
         self._need[-1] = self.rows  # the last nodes close the stage
 
     def run(self, steps: int) -> np.ndarray:
         """(steps,) the first cycle after each step of a run; the last is what the circuit's counter says."""
         updated = np.full(len(self._need), 0)
-        last_row, last_node = self.latencies.rows - 1, self.latencies.nodes - 1
+        last_row, last_node = self.latencies.rows - 1, self.latencies.nodes - self._turns
         ends = []
         for stage in range(steps * RK4.stages):
             rows = in_turn(updated[self._highest] if stage else np.zeros(self.rows, np.int64), last_row + 1)
             summed = np.concatenate([[0], rows + self.latencies.edge])
-            nodes = in_turn(summed[self._need], last_node + 1)
+            nodes = in_turn(summed[self._need], last_node + self._turns, self._turns)
             updated = nodes + self.latencies.node
             last_row, last_node = rows[-1], nodes[-1]
             ends += [updated[-1] - FRONT_LATENCY] if stage % RK4.stages == RK4.stages - 1 else []
@@ -69,9 +71,10 @@ class Wavefront:
         return RK4.stages * self.edges / (self._lanes * self.per_step())
 
 
-def in_turn(ready: np.ndarray, first: int) -> np.ndarray:
-    """When entries of a list go that are ready at these times, one a cycle, the first not before ``first``."""
-    turns = np.arange(len(ready))
+def in_turn(ready: np.ndarray, first: int, pace: int = 1) -> np.ndarray:
+    """When entries of a list go that are ready at these times, one in ``pace`` cycles, the first not before
+    ``first``."""
+    turns = pace * np.arange(len(ready))
     return turns + np.maximum.accumulate(np.maximum(ready - turns, first))
 
 

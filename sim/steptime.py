@@ -49,7 +49,7 @@ def _timed(scene: Scene, timing) -> dict:
     from hw.parameters import Parameters
     from sim.cycles import Wavefront
 
-    parameters = Parameters(**{name: getattr(timing, name) for name in Parameters.RANGES})
+    parameters = Parameters(**{name: getattr(timing, name) for name in Parameters.SIZES})
     sizes = {"lanes": parameters.lanes, "updates": parameters.updates, "clock_mhz": timing.clock_mhz}
     try:
         cycles = Wavefront(limits.load(scene).image, parameters).per_step()

@@ -15,10 +15,10 @@ from sim.rtl import Circuit
 STATE = "x", "v", "force", "ratio"
 
 
-def circuit(lanes, updates=1):
+def circuit(lanes, updates=1, axes=3):
     """All of as many updates have the same lane, which is compiled once; with two lanes and one update it is the
     circuit that scenes are run on."""
-    return Parameters(lanes=lanes, updates=updates, edges=2048 * lanes)
+    return Parameters(lanes=lanes, updates=updates, axes=axes, edges=2048 * lanes)
 
 
 def rtl_machine(image, *, parameters, folder=BUILD, waves=None) -> CircuitMachine:

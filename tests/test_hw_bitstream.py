@@ -13,8 +13,9 @@ from hw.__main__ import main
 from hw.bitstream import command, flow, result, tools
 from hw.bitstream.result import Build
 from hw.board_top import CLOCK, PLLS
+from hw.parameters import Parameters
 from hw.timing import tools as programs
-from hw.timing.result import PARAMETERS, read
+from hw.timing.result import read
 
 CELLS = {
     "ecp5": {"LUT4": 1000, "CCU2C": 300, "TRELLIS_DPR16X4": 5, "TRELLIS_FF": 2106, "MULT18X18D": 23, "DP16KD": 10,
@@ -71,7 +72,7 @@ def test_sizes_of_a_family(family):
 def test_a_bitstream_and_its_figures(run, aside, tmp_path):
     code, out, err = run("ulx3s-85f")
     assert code == 0 and aside["called"] == ["place", "pack"]
-    assert out[0] == "ulx3s-85f (85k): 4 lanes, 1 updates, 512 nodes, 4096 edges, 16 materials, 4 tables"
+    assert out[0] == "ulx3s-85f (85k): 4 lanes, 1 update, 512 nodes, 4096 edges, 16 materials, 4 tables"
     assert out[1] == "clock 100 MHz, 104.0 MHz reached; line 1000000 baud"
     assert out[2:4] == ["LUT            1620 of   83640    2%", "FF             2106 of   83640    3%"]
     assert out[-2:] == ["built and timed", "bitstream: build/ulx3s-85f/rheogate.bit"]
@@ -163,8 +164,8 @@ def test_files_that_are_kept_are_builds_of_the_boards_own_circuits():
     for path in result.KEPT.glob("*.json"):
         build, board = read(path, Build), boards.load(path.stem)
         assert build.board == path.stem
-        assert {size: getattr(build, size) for size in PARAMETERS} == \
-               {size: getattr(board.circuit, size) for size in PARAMETERS}
+        assert {size: getattr(build, size) for size in Parameters.SIZES} == \
+               {size: getattr(board.circuit, size) for size in Parameters.SIZES}
 
 
 def test_the_tools_are_told_device_and_files(tmp_path, monkeypatch):

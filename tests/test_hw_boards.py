@@ -44,8 +44,14 @@ def test_a_board_has_its_circuit_and_takes_another():
 
 
 def test_a_circuit_has_a_size_of_each_kind():
-    assert tuple(boards.Circuit.__struct_fields__) == tuple(Parameters.RANGES)
-    assert set(Parameters.RANGES) <= set(Result.__struct_fields__)
+    assert tuple(boards.Circuit.__struct_fields__) == Parameters.SIZES
+    assert set(Parameters.SIZES) <= set(Result.__struct_fields__)
+
+
+def test_nodes_that_are_updated_per_cycle_are_less_than_one_if_their_axes_have_turns():
+    circuit = {"lanes": 1, "nodes": 2, "edges": 1, "materials": 1, "tables": 1}
+    assert [boards.Circuit(**circuit, updates=updates, axes=axes).updated for updates in (1, 2) for axes in (3, 1)] == \
+           ["1", "1/3", "2", "2/3"]
 
 
 def test_an_unknown_board_lists_those_known():

@@ -86,8 +86,9 @@ def loading(program):
 
 
 @pytest.mark.parametrize(
-    ("lanes", "updates", "press", "hold"), [(1, 1, [1, 2], [1]), (2, 1, [1], [1]), (2, 2, [1], [1])])
-def test_a_pressed_block(lanes, updates, press, hold, rng):
+    ("lanes", "updates", "axes", "press", "hold"),
+    [(1, 1, 3, [1, 2], [1]), (2, 1, 3, [1], [1]), (2, 2, 3, [1], [1]), (1, 1, 1, [1, 2], [1]), (2, 2, 1, [1], [1])])
+def test_a_pressed_block(lanes, updates, axes, press, hold, rng):
     """In runs of one step and of more; a new phase; counters; and the door is shut while it runs."""
     mesh = irregular((3, 2), rng)
     kinds = MATERIALS["rheological"], MATERIALS["plastic"]
@@ -95,7 +96,7 @@ def test_a_pressed_block(lanes, updates, press, hold, rng):
     loaded = load(scene)
     image = loaded.image
     image.damper = {name: np.zeros_like(raw) for name, raw in image.damper.items()}  # linear dampers need none
-    core, program, machine = circuit(image, lanes, updates=updates)
+    core, program, machine = circuit(image, lanes, updates=updates, axes=axes)
     host = Host(core)
 
     async def bench(ctx):

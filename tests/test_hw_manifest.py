@@ -42,9 +42,8 @@ def test_hashes(contents):
 
 def test_parameters(contents):
     assert contents["parameters"] == {
-        "lanes": 3, "updates": 1, "nodes": 20, "edges": 31, "rows": 11, "materials": 5, "tables": 2, "operand": 18,
-        "state": 36,
-        "family": "generic"}
+        "lanes": 3, "updates": 1, "nodes": 20, "edges": 31, "rows": 11, "materials": 5, "tables": 2, "axes": 3,
+        "operand": 18, "state": 36, "family": "generic"}
 
 
 def test_ports(contents, core):

@@ -39,6 +39,15 @@ def test_each_end_of_a_range_is_legal_and_nothing_beyond(name):
                 f"{name} must be a whole number from {low} to {high}, not {value!r}")
 
 
+@pytest.mark.parametrize("axes", [0, 2, 4, 1.0, "3", None])
+def test_axes_that_an_updater_cannot_take_at_a_time(axes):
+    refused(lambda: Parameters(axes=axes), f"axes must be 1 or 3, not {axes!r}")
+
+
+def test_an_updater_takes_as_many_turns_as_a_node_has_axes_for_each():
+    assert (Parameters(axes=3).turns, Parameters(axes=1).turns) == (1, 3)
+
+
 @pytest.mark.parametrize("family", ["x", "ECP5", "", None])
 def test_a_family_that_nobody_knows(family):
     refused(lambda: Parameters(family=family), f"family must be generic or ecp5 or gowin, not {family!r}")

@@ -43,8 +43,9 @@ def random_lists(rng, nodes, rows, lanes, kind) -> Lists:
 class Run:
     """A sequencer with lists in front of it and pipelines of given lengths behind it, watched in every cycle."""
 
-    def __init__(self, dut, lists: Lists, steps, latencies, ready, rng, stop=None):
+    def __init__(self, dut, lists: Lists, steps, latencies, ready, rng, stop=None, turns=1):
         self._stop = stop  # the cycle in which it is told to stop
+        self._turns, self._last_node = turns, -turns  # the cycle in which a node went
         self.dut, self.lists, self.steps = dut, lists, steps
         self.row_latency, self.node_latency = latencies
         self._ready, self._rng = ready, rng
@@ -119,6 +120,8 @@ class Run:
             assert ctx.get(dut.node_stage) == node_stage % RK4.stages
             needed = len(lists.rows) * node_stage + lists.need[node]
             assert self.rows_summed >= needed, "a node went before its rows were summed"
+            assert self.cycles >= self._last_node + self._turns, "a node went before the one before had its turns"
+            self._last_node = self.cycles
         for k, (name, take) in enumerate((("row", row_take), ("node", node_take))):
             if take or not self._standing[k]:
                 self._standing[k] = bool(self._rng.random() < self._ready)
@@ -152,6 +155,16 @@ def test_random_lists(kind, ready, latencies, rng):
     for _ in range(4):  # one after the other, on the same circuit
         lists = random_lists(rng, int(rng.integers(2, 20)), int(rng.integers(1, 25)), int(rng.integers(1, 4)), kind)
         runs.append(Run(dut, lists, int(rng.integers(1, 4)), latencies, ready, rng))
+    watched(*runs)
+
+
+@pytest.mark.parametrize("kind", ["sorted", "shuffled", "backwards", "empty"])
+@pytest.mark.parametrize("ready", [1.0, 0.6])
+def test_nodes_have_their_turns(kind, ready, rng):
+    dut, runs = Sequencer(turns=3), []
+    for latencies in (1, 3), (12, 5), (3, 20):
+        lists = random_lists(rng, int(rng.integers(2, 20)), int(rng.integers(1, 25)), int(rng.integers(1, 4)), kind)
+        runs.append(Run(dut, lists, int(rng.integers(1, 4)), latencies, ready, rng, turns=3))
     watched(*runs)
 
 

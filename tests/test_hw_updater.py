@@ -63,8 +63,13 @@ class Bench:
         self.dut, self.nodes, self.rng, self.order, self.widest_gap = dut, nodes, rng, order, widest_gap
         self.faults = set()
 
+    def turn(self, ctx, axis: str):
+        if self.dut.datapath.turns > 1 and axis in AXES:
+            ctx.set(self.dut.host_axis, AXES.index(axis))
+
     async def write(self, ctx, strobe, bit, values):
         ctx.set(self.dut.host, 1)
+        self.turn(ctx, AXES[bit % 3])
         for index, value in enumerate(values):
             ctx.set(strobe, 1 << bit)
             ctx.set(self.dut.host_index, index)
@@ -94,7 +99,8 @@ class Bench:
         mask = rng.integers(2, size=(NODES, self.nodes.banks))
         self.nodes.update(number, sums, mask)
         gaps = rng.integers(0, self.widest_gap, NODES, endpoint=True)
-        issued = dict(zip((np.cumsum(gaps) + np.arange(NODES)).tolist(), self.order.tolist(), strict=True))
+        cycles = np.cumsum(gaps) + dut.datapath.turns * np.arange(NODES)
+        issued = dict(zip(cycles.tolist(), self.order.tolist(), strict=True))
         for bit, value in RK4.stage(number).items():
             ctx.set(getattr(dut, f"stage_{bit}"), value)
         for cycle in range(max(issued) + dut.datapath.latency + 2):
@@ -120,6 +126,7 @@ class Bench:
     async def read(self, ctx, port):
         seen = []
         ctx.set(self.dut.host, 1)
+        self.turn(ctx, port.name[-1])
         for index in [*range(NODES), *[0] * (HANDOVER + READ_LATENCY)]:
             seen.append(ctx.get(port))
             ctx.set(self.dut.host_index, index)
@@ -133,9 +140,11 @@ def updater(parameters):
     return NodeUpdater(parameters, datapaths(parameters)[1])
 
 
-@pytest.mark.parametrize(("lanes", "order", "widest_gap"), [(1, "up", 0), (2, "any", 2)])
-def test_whole_steps(lanes, order, widest_gap, rng):
-    parameters = Parameters(lanes=lanes, nodes=NODES, edges=8, materials=2, tables=1)
+@pytest.mark.parametrize(("axes", "lanes", "order", "widest_gap"), [
+    (3, 1, "up", 0), (3, 2, "any", 2), (1, 1, "up", 0), (1, 2, "any", 2), (1, 1, "any", 5),
+])
+def test_whole_steps(axes, lanes, order, widest_gap, rng):
+    parameters = Parameters(lanes=lanes, nodes=NODES, edges=8, materials=2, tables=1, axes=axes)
     dut, nodes = updater(parameters), Nodes(parameters.formats, rng, 2 * lanes)
     assert dut.banks == nodes.banks
     orders = {"up": np.arange(NODES), "any": rng.permutation(NODES)}
@@ -160,9 +169,10 @@ def test_whole_steps(lanes, order, widest_gap, rng):
     assert run.faults == set(nodes.faults) and len(run.faults) >= 3
 
 
-def test_a_word_the_host_writes_is_where_the_next_step_starts(rng):
+@pytest.mark.parametrize("axes", [1, 3])
+def test_a_word_the_host_writes_is_where_the_next_step_starts(axes, rng):
     """Positions and velocities between two steps: both the start and the value of the first stage."""
-    parameters = Parameters(lanes=1, nodes=NODES, edges=8, materials=2, tables=1)
+    parameters = Parameters(lanes=1, nodes=NODES, edges=8, materials=2, tables=1, axes=axes)
     dut, nodes = updater(parameters), Nodes(parameters.formats, rng, 2)
     run = Bench(dut, nodes, rng, np.arange(NODES), 1)
 

@@ -13,16 +13,17 @@ from sim.cycles import Wavefront, in_turn
 from sim.image import load
 
 
-def wavefront(nodes, lanes, updates=1, latencies=None):
+def wavefront(nodes, lanes, updates=1, latencies=None, axes=3):
     make = rectangle if len(nodes) == 2 else box
     mesh = make(nodes, tuple(0.0125 * (n - 1) for n in nodes))
     image = load(pressed(mesh, MATERIALS["rheological"], 30)).image
-    parameters = Parameters(lanes=lanes, updates=updates, nodes=1024)
+    parameters = Parameters(lanes=lanes, updates=updates, nodes=1024, axes=axes)
     return Wavefront(image, parameters, latencies), image
 
 
 def test_entries_go_in_turn():
     assert in_turn(np.array([0, 0, 9, 0, 2]), 4).tolist() == [4, 5, 9, 10, 11]
+    assert in_turn(np.array([0, 0, 9, 0, 20]), 4, 3).tolist() == [4, 7, 10, 13, 20]
 
 
 @pytest.mark.parametrize(("nodes", "lanes", "updates", "least"), [
@@ -49,3 +50,11 @@ def test_with_latencies_of_nothing_the_longer_list_says_how_long_a_step_takes():
     model, image = wavefront((9, 9), 1, latencies=Latencies(0, 0, 0, 0))
     assert model.per_step() == RK4.stages * len(image.edges)
     assert model.run(3)[-1] + FRONT_LATENCY >= 3 * model.per_step()
+
+
+def test_with_an_axis_at_a_time_nodes_say_how_long_a_step_takes_where_they_have_few_edges():
+    """Two-dimensional objects have less than three edges a node, three-dimensional ones more."""
+    for nodes, longer in (((9, 9), "nodes"), ((5, 5, 5), "edges")):
+        model, image = wavefront(nodes, 1, latencies=Latencies(0, 0, 0, 0), axes=1)
+        most = {"nodes": 3 * image.nodes, "edges": len(image.edges)}
+        assert model.per_step() == RK4.stages * most[longer] and most[longer] == max(most.values())

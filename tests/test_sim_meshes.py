@@ -16,7 +16,7 @@ from sim.speed import meshes
 from sim.speed.meshes import MESHES
 
 STEPS = 20
-CIRCUITS = [(lanes, updates) for lanes in (1, 2, 4, 6) for updates in (1, 2)]
+CIRCUITS = [(lanes, updates, axes) for axes in (3, 1) for lanes in (1, 2, 4, 6) for updates in (1, 2)]
 
 
 def graded(rng) -> Mesh:
@@ -64,8 +64,8 @@ def image(rng, number):
     return ORDERS[order](one, rng).image
 
 
-def check(numbers, lanes, updates, seed):
-    parameters = circuit(lanes, updates)
+def check(numbers, shape, seed):
+    parameters = circuit(*shape)
     for number in numbers:
         object_ = image(np.random.default_rng([seed, number]), number)
         model, cycles = NativeMachine(object_), Wavefront(object_, parameters).run(STEPS)
@@ -83,17 +83,17 @@ def check(numbers, lanes, updates, seed):
             machine.close()
 
 
-@pytest.mark.parametrize(("lanes", "updates"), [(2, 1), (4, 2)])
-def test_some_meshes(lanes, updates, seed):
-    check(range(20), lanes, updates, seed)
+@pytest.mark.parametrize("shape", [(2, 1, 3), (4, 2, 3), (1, 1, 1), (2, 2, 1)])
+def test_some_meshes(shape, seed):
+    check(range(20), shape, seed)
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize(("lanes", "updates"), CIRCUITS)
-def test_three_hundred_meshes(lanes, updates, seed):
+@pytest.mark.parametrize("shape", CIRCUITS)
+def test_three_hundred_meshes(shape, seed):
     """Forty in each circuit, no two the same."""
-    first = 40 * CIRCUITS.index((lanes, updates))
-    check(range(first, first + 40), lanes, updates, seed)
+    first = 40 * CIRCUITS.index(shape)
+    check(range(first, first + 40), shape, seed)
 
 
 @pytest.mark.campaign
@@ -114,10 +114,10 @@ def test_the_benchmarks_meshes_take_the_cycles_that_it_says(name, updates):
     assert runs[1] - runs[0] == cycles_per_step(scene, 4, updates)
 
 
-@pytest.mark.parametrize(("lanes", "updates"), CIRCUITS)
-def test_every_step_takes_as_long(lanes, updates, seed):
+@pytest.mark.parametrize("shape", CIRCUITS)
+def test_every_step_takes_as_long(shape, seed):
     """Which `Wavefront.per_step` insists on; nothing proves that no list takes turns, so many are tried."""
-    parameters = circuit(lanes, updates)
+    parameters = circuit(*shape)
     latencies = Latencies.of(parameters)
     for number in range(20):
         object_ = image(np.random.default_rng([seed, number]), number)

@@ -7,10 +7,11 @@ from pathlib import Path
 from golden.errors import InputError
 
 from .. import boards
+from ..parameters import Parameters
 from ..timing.command import progress
 from ..timing.result import read, write
 from . import flow, tools
-from .result import KEPT, SIZES, Build, table
+from .result import KEPT, Build, table
 
 ROOT = Path(__file__).parents[2]
 OUT = ROOT / "build" / "bitstream"
@@ -18,7 +19,7 @@ OUT = ROOT / "build" / "bitstream"
 
 def add_options(command, whole: Callable[[str], int]) -> None:
     command.add_argument("--board", required=True, metavar="NAME", help=" or ".join(boards.names()))
-    for name in SIZES:
+    for name in Parameters.SIZES:
         command.add_argument(f"--{name}", type=whole, metavar="N", help="instead of the board's")
     command.add_argument("--timing-allow-fail", action="store_true", help="a bitstream even if the clock is missed")
     command.add_argument("--keep", action="store_true", help="write the figures below constraints/builds/ as well")
@@ -28,7 +29,7 @@ def add_options(command, whole: Callable[[str], int]) -> None:
 def run(args) -> int:
     board = boards.load(args.board)
     try:
-        parameters = board.parameters(**{name: getattr(args, name) for name in SIZES})
+        parameters = board.parameters(**{name: getattr(args, name) for name in Parameters.SIZES})
     except ValueError as error:
         raise InputError(f"--{error}") from None
     if args.keep and parameters != board.parameters():

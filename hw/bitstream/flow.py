@@ -12,7 +12,7 @@ from ..boards import Board, too_many
 from ..parameters import Parameters
 from ..timing.report import fmax
 from . import tools
-from .result import SIZES, Build
+from .result import Build
 
 
 def build(name: str, board: Board, parameters: Parameters, folder: Path, shown: Callable[[str], None],
@@ -36,7 +36,7 @@ def build(name: str, board: Board, parameters: Parameters, folder: Path, shown: 
     sizes = cells.sizes(tools.synthesise(board, verilog, folder), board.family)
     result = Build(
         board=name,
-        **{size: getattr(parameters, size) for size in SIZES},
+        **{size: getattr(parameters, size) for size in Parameters.SIZES},
         clock_mhz=mhz,
         baud=board.baud,
         **{size: getattr(sizes, size) for size in sizes.__struct_fields__},

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from .. import boards
 from ..boards import Board, Circuit, shares
-from ..parameters import Parameters
 
 KEPT = boards.FOLDER / "builds"
-SIZES = tuple(Parameters.RANGES)
+SHOWN = "lanes", "updated", "nodes", "edges"
 
 
 class Build(Circuit, forbid_unknown_fields=True, kw_only=True):
@@ -48,7 +47,7 @@ def table(build: Build, board: Board) -> str:
     """What a terminal shows of a build."""
     fmax = "" if build.fmax_mhz is None else f", {build.fmax_mhz:.1f} MHz reached"
     lines = [
-        f"{build.board} ({board.device}): " + ", ".join(f"{getattr(build, name)} {name}" for name in SIZES),
+        f"{build.board} ({board.device}): {build.text}",
         f"clock {build.clock_mhz:g} MHz{fmax}; line {build.baud} baud",
         *(f"{name:11}{used:8} of{of:8}{used / of:6.0%}" for name, used, of in shares(build, board)),
         build.state(board),
@@ -71,11 +70,10 @@ def published(kept: dict[str, Build]) -> str:
 
 def _cells(build: Build | None, board: Board) -> list[str]:
     if build is None:
-        circuit = board.parameters()
-        sizes = [str(getattr(circuit, name)) for name in SIZES[:4]]
+        sizes = [str(getattr(board.circuit, name)) for name in SHOWN]
         return [*sizes, f"{board.clock_mhz:g} MHz", *[""] * 5, "not built yet", "no"]
     return [
-        *(str(getattr(build, name)) for name in SIZES[:4]),
+        *(str(getattr(build, name)) for name in SHOWN),
         f"{build.clock_mhz:g} MHz",
         "" if build.fmax_mhz is None else f"{build.fmax_mhz:.1f} MHz",
         *(f"{used} ({used / of:.0%})" for _, used, of in shares(build, board)),

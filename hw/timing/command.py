@@ -8,8 +8,9 @@ from pathlib import Path
 from golden.errors import InputError
 
 from .. import boards
+from ..parameters import Parameters
 from . import flow
-from .result import KEPT, PARAMETERS, Result, Smallest, table, write
+from .result import KEPT, Result, Smallest, table, write
 
 ROOT = Path(__file__).parents[2]
 OUT = ROOT / "build" / "timing"
@@ -21,7 +22,7 @@ def add_options(command, whole: Callable[[str], int]) -> None:
     what = command.add_mutually_exclusive_group(required=True)
     what.add_argument("--board", metavar="NAME", help=" or ".join(boards.timed()))
     what.add_argument("--smallest", action="store_true", help="only the sizes of the smallest circuit")
-    for name in PARAMETERS:
+    for name in Parameters.SIZES:
         command.add_argument(f"--{name}", type=whole, metavar="N", help="instead of the board's")
     command.add_argument("--seeds", type=whole, nargs="+", default=SEEDS, metavar="N",
                          help="place and route so often, from these (1 2 3)")
@@ -38,7 +39,7 @@ def run(args) -> int:
             result = flow.smallest(OUT)
         print(", ".join(f"{getattr(result.sizes, name)} {name}" for name in result.sizes.__struct_fields__))
         return _written("smallest", result, args.keep)
-    chosen = {name: getattr(args, name) for name in PARAMETERS}
+    chosen = {name: getattr(args, name) for name in Parameters.SIZES}
     board = boards.load(args.board)
     if board.family not in boards.TIMED:
         raise InputError(f"--board must be one whose device the tools time, {' or '.join(boards.timed())}, "

@@ -10,7 +10,7 @@ from ..boards import Board, fits
 from ..parameters import Parameters
 from . import report, tools
 from .frame import framed
-from .result import PARAMETERS, Result, Smallest
+from .result import Result, Smallest
 
 SMALLEST = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1, family="ecp5")
 
@@ -40,7 +40,7 @@ def measure(name: str, board: Board, parameters: Parameters, seeds: list[int], f
     limits, sizes = board.limits_mhz, report.placed(reports[0]) - frame
     return Result(
         board=name,
-        **{size: getattr(parameters, size) for size in PARAMETERS},
+        **{size: getattr(parameters, size) for size in Parameters.SIZES},
         grade=board.grade,
         seeds=seeds,
         fmax_mhz=clocks,
@@ -59,4 +59,4 @@ def measure(name: str, board: Board, parameters: Parameters, seeds: list[int], f
 def smallest(folder: Path) -> Smallest:
     """What the smallest circuit takes."""
     circuit, _ = report.sizes(tools.synthesise(framed(SMALLEST), folder, "smallest"))
-    return Smallest({size: getattr(SMALLEST, size) for size in PARAMETERS}, circuit)
+    return Smallest({size: getattr(SMALLEST, size) for size in Parameters.SIZES}, circuit)

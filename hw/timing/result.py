@@ -12,11 +12,9 @@ from golden.files import write_text
 from .. import boards
 from ..boards import Board, Circuit, Limits, shares
 from ..cells import Sizes
-from ..parameters import Parameters
 from .report import Step
 
 KEPT = boards.FOLDER / "timing"
-PARAMETERS = tuple(Parameters.RANGES)
 
 
 class Result(Circuit, forbid_unknown_fields=True, kw_only=True):
@@ -57,12 +55,10 @@ def read(path: Path, kind: type):
 
 def table(result: Result, board: Board) -> str:
     """What a terminal shows of a result."""
-    counts = {name: getattr(result, name) for name in PARAMETERS}
-    sizes = ", ".join(f"{count} {name if count > 1 else name.removesuffix('s')}" for name, count in counts.items())
     runs = ", ".join(f"{mhz:.1f}" for mhz in result.fmax_mhz)
     limits = f"multiplier {result.limits_mhz.multiplier:g} MHz, block RAM {result.limits_mhz.block_ram:g} MHz"
     lines = [
-        f"{result.board} ({board.device}, speed grade {result.grade}): {sizes}",
+        f"{result.board} ({board.device}, speed grade {result.grade}): {result.text}",
         "",
         f"Fmax    {result.fmax_min:.1f} MHz at least, {result.fmax_median:.1f} MHz median of {runs}",
         f"limits  {limits}: not seen by place and route",
@@ -97,7 +93,7 @@ def _cells(result: Result, board: Board) -> list[str]:
     limit = min(result.limits_mhz.multiplier, result.limits_mhz.block_ram)
     clocks = result.fmax_min, result.fmax_median, limit, result.clock_mhz
     return [
-        *(str(getattr(result, name)) for name in ("lanes", "updates", "nodes", "edges")),
+        *(str(getattr(result, name)) for name in ("lanes", "updated", "nodes", "edges")),
         *(f"{used} ({used / available:.0%})" for _, used, available in shares(result, board)),
         *(f"{mhz:.1f} MHz" for mhz in clocks),
     ]

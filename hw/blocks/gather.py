@@ -1,0 +1,40 @@
+"""What the words of a group have between them, where they come one after the other."""
+
+from amaranth.hdl import Cat, Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from golden.graph import AXES
+
+GATHERED = len(AXES)
+"""Words of a group, and cycles from each of them to what all of them have."""
+
+
+class Gather(wiring.Component):
+    """The OR of `GATHERED` words that come in as many cycles, beside each of them `GATHERED` cycles later.
+
+    Parameters
+    ----------
+    width : int
+
+    Members
+    -------
+    i : In(width)
+    first : In(1)
+        It is the first word of a group.
+    o : Out(width)
+    """
+
+    def __init__(self, *, width: int):
+        self.kind = f"gather_{width}"
+        super().__init__({"i": In(width), "first": In(1), "o": Out(width)})
+
+    def elaborate(self, platform):
+        m = Module()
+        before, held = Signal.like(self.i, reset_less=True), Signal.like(self.i, reset_less=True)
+        all_, ago = Signal.like(self.i), Signal(GATHERED - 1, reset_less=True)  # since the first word
+        m.d.comb += [all_.eq(Mux(self.first, 0, before) | self.i), self.o.eq(held)]
+        m.d.sync += [before.eq(all_), ago.eq(Cat(self.first, ago))]
+        with m.If(ago[-1]):
+            m.d.sync += held.eq(all_)
+        return m
