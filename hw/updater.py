@@ -129,7 +129,7 @@ class NodeUpdater(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         self._m, self._lines = m, DelayLines(m)
-        self._items(len(AXES) > self.parameters.axes)
+        self._items()
         inputs = {"velocity_shift": self._lines.later(self.velocity_shift, 1)}
         for name, bit in self._stage.items():
             inputs[name] = self._later(bit, self.schedule.arrival[name])
@@ -144,19 +144,19 @@ class NodeUpdater(wiring.Component):
         self._lines.build()
         return m
 
-    def _items(self, in_turn: bool):
+    def _items(self):
         """What goes through the pipeline, a node or one of its axes: ``_gathered`` cycles from its issue to its sums,
-        ``_place`` in the memories of vectors."""
+        ``_place`` in the memories of vectors, which have ``_depth`` words."""
         stage = {name: getattr(self, name) for name in map("stage_{}".format, RK4.stage(0))}
         self._valid, self._row, self._stage, self._gathered = self.valid, self.row, stage, GATHERED
-        self._last, self._place = self.valid, self.row
-        if not in_turn:
+        self._last, self._place, self._depth = self.valid, self.row, self.parameters.node_rows
+        if self.datapath.turns == 1:
             return
         node = Cat(self.row, *stage.values())
         self._m.submodules.turns = turns = Turns(width=len(node))
         self._m.d.comb += [turns.valid.eq(self.valid), turns.i.eq(node)]
         self._valid, self._first, self._last = turns.turn_valid, turns.first, turns.last
-        self._gathered = GATHERED - 1
+        self._gathered, self._depth = GATHERED - 1, len(AXES) << len(self.row)
         self._row, self._place = Signal.like(self.row, name="turn_row"), Signal(len(self.row) + len(turns.axis))
         self._stage = {name: Signal(name=f"turn_{name}") for name in stage}
         self._m.d.comb += [
@@ -196,9 +196,7 @@ class NodeUpdater(wiring.Component):
 
     def _memory(self, name: str, width: int, arrival: int, *, vector: bool = True) -> BlockRam:
         """A word per node, or of a vector per item, read for ``arrival``, or for the host."""
-        rows = self.parameters.node_rows
-        depth = rows if self.datapath.turns == 1 or not vector else len(AXES) << len(self.row)
-        ram = BlockRam(width=width, depth=depth)
+        ram = BlockRam(width=width, depth=self._depth if vector else self.parameters.node_rows)
         self._m.submodules[name] = ram
         address = self._later(self._place if vector else self._row, arrival - READ_LATENCY - 1 - self._early(arrival))
         host, by_host = self._host(""), self._host_place() if vector else self._host("index")
@@ -221,13 +219,12 @@ class NodeUpdater(wiring.Component):
                 name = f"{quantity}_{axis}"
                 memories[name] = ram = self._memory(f"node_{name}", q.width, arrival[name])
                 inputs[name] = self._near(name, ram, q)
-        strobes = self._host("write_load")
-        for number, axis in enumerate(axes):
+        strobes = dict(zip(AXES, self._host("write_load"), strict=True))
+        for axis in axes:
             q = self.parameters.formats.accumulator
             memories[f"load_{axis}"] = ram = self._memory(f"load_{axis}", q.width, arrival[f"load_{axis}"])
             inputs[f"load_{axis}"] = self._near(f"load_{axis}", ram, q)
-            strobe = strobes[number] if axes == AXES else strobes.any()
-            self._written(f"load_{axis}", ram, by_host=(strobe, self._host("data")))
+            self._written(f"load_{axis}", ram, by_host=(self._any(strobes, axis), self._host("data")))
         for axis in AXES:
             self._m.d.comb += getattr(self, f"host_load_{axis}").eq(memories[f"load_{self._of(axis)}"].data)
         low = 0
@@ -244,6 +241,10 @@ class NodeUpdater(wiring.Component):
     def _of(self, axis: str) -> str:
         """What the component of an axis is called in the pipeline."""
         return axis if axis in self.datapath.axes else IN_TURN[0]
+
+    def _any(self, bits: dict, axis: str):
+        """Of bits by axis, that of a component of the pipeline: of the axis, or of any."""
+        return bits[axis] if axis in bits else Cat(*bits.values()).any()
 
     def _near(self, name: str, ram: BlockRam, q):
         """A memory's word when the pipeline needs it, where there is time for it from a register: the place of a memory
@@ -264,8 +265,8 @@ class NodeUpdater(wiring.Component):
             for axis in axes:
                 by_host = {}
                 if quantity in ("x_base", "v_base", "v"):
-                    whose = [strobes[f"{quantity[0]}_{each}"] for each in AXES if self._of(each) == axis]
-                    by_host["by_host"] = Cat(*whose).any() if turns > 1 else whose[0], self._host("data")
+                    whose = {each: strobes[f"{quantity[0]}_{each}"] for each in AXES}
+                    by_host["by_host"] = self._any(whose, axis), self._host("data")
                 own = valid & last if "base" in quantity else valid, pipe.output(f"{result}_{axis}", done)
                 name = f"{quantity}_{axis}"
                 self._written(f"node_{name}", memories[name], own=own, **by_host)
@@ -277,8 +278,7 @@ class NodeUpdater(wiring.Component):
         m.d.comb += [self.update.eq(self._later(self._last, done)), self.update_row.eq(self._later(self._row, done))]
         forces = {}
         for axis in axes:
-            depth = self.parameters.node_rows if turns == 1 else len(AXES) << len(self.row)
-            forces[axis] = force = BlockRam(width=self.parameters.formats.state, depth=depth)
+            forces[axis] = force = BlockRam(width=self.parameters.formats.state, depth=self._depth)
             m.submodules[f"force_{axis}"] = force
             self._written(f"force_{axis}", force, own=(valid, pipe.output(f"force_{axis}", done)))
             m.d.sync += force.address.eq(self._host_place())

@@ -160,6 +160,20 @@ def test_what_is_kept_is_published(run, tmp_path):
                      "| 13 (6%) | built and timed | no |")
 
 
+@pytest.mark.parametrize(("name", "required"), [
+    ("ulx3s-85f", "built and timed"), ("ulx3s-25f", "built and timed"),
+    ("tang-mega-138k-pro", "built, multipliers and block RAMs not timed"),
+])
+def test_bitstreams_that_are_published(name, required, figure):
+    kept = command.kept()
+    if name not in kept:
+        pytest.skip(f"nothing of {name} is published")
+    state = kept[name].state(boards.load(name))
+    figure(f"bitstream of {name}, clock {kept[name].clock_mhz:g} MHz, reached {kept[name].fmax_mhz} MHz", required,
+           state)
+    assert state == required
+
+
 def test_files_that_are_kept_are_builds_of_the_boards_own_circuits():
     for path in result.KEPT.glob("*.json"):
         build, board = read(path, Build), boards.load(path.stem)

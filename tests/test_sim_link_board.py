@@ -3,6 +3,7 @@
 import re
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +22,8 @@ from sim.link.errors import CommandRefused, LineBroken, LinkError, OtherCircuit
 from sim.loaded import CircuitMachine
 from sim.native import NativeMachine
 
+RHEOLOGICAL = Path(__file__).parents[1] / "scenes" / "rheological.toml"
+
 
 @pytest.fixture
 def service():
@@ -32,14 +35,28 @@ def control(register):
     return Map(SMALL).address(Region.CONTROL, 0, register)
 
 
+def runs(scene, service, folder) -> tuple:
+    """What ``run`` writes of a scene on the board and on the simulated circuit."""
+    out = [folder / name for name in ("board", "rtl")]
+    assert main(["run", str(scene), "--backend", "board", "--port", service.url, "--out", str(out[0])]) == 0
+    assert main(["run", str(scene), "--backend", "rtl", "--lanes", "1", "--out", str(out[1])]) == 0
+    return tuple(dict(np.load(path / "trajectory.npz")) for path in out)
+
+
 def test_a_scene_on_a_board_has_the_bits_of_the_simulated_circuit(service, tmp_path, capsys):
-    scene = str(scene_text.written(tmp_path))
-    out = [tmp_path / name for name in ("board", "rtl")]
-    assert main(["run", scene, "--backend", "board", "--port", service.url, "--out", str(out[0])]) == 0
-    assert main(["run", scene, "--backend", "rtl", "--lanes", "1", "--out", str(out[1])]) == 0
-    board, rtl = (np.load(folder / "trajectory.npz") for folder in out)
+    board, rtl = runs(scene_text.written(tmp_path), service, tmp_path)
     assert all(np.array_equal(board[name], rtl[name], equal_nan=True) for name in rtl) and len(board["x"]) > 3
     assert "block: 150 steps on board" in capsys.readouterr().out
+
+
+@pytest.mark.campaign
+def test_so_has_the_whole_rheological_scene(tmp_path, figure):
+    with served(Parameters(lanes=1, nodes=128, edges=256, materials=2, tables=1)) as service:
+        board, rtl = runs(RHEOLOGICAL, service, tmp_path)
+    assert set(board) == set(rtl) and len(board["x"]) > 30 and np.ptp(board["a"]) > 0.1
+    differ = [name for name in rtl if not np.array_equal(board[name], rtl[name], equal_nan=True)]
+    figure(f"arrays of {RHEOLOGICAL.name}, run on the served top level, that are not equal to rtl", 0, len(differ))
+    assert not differ
 
 
 def test_a_board_is_used_again_and_again_as_it_was_left(service, rng):
