@@ -95,6 +95,7 @@ class Board(Struct, forbid_unknown_fields=True):
     holds: Holds
     circuit: Circuit  # what is built unless something else is asked for
     limits_mhz: Limits | None = None  # of the families that are `TIMED`
+    crowded: bool = False  # nearly all of its lookup tables are used: see `hw.timing.tools.options`
 
     @property
     def ports(self) -> dict[str, Pin]:

@@ -195,6 +195,17 @@ def test_the_tools_are_told_device_and_files(tmp_path, monkeypatch):
     assert called[3].startswith("gowin_pack -d GW5AST-138C --cpu_as_gpio -o rheogate.fs")
 
 
+@pytest.mark.parametrize(("name", "line"), [
+    ("ulx3s-25f", "synth_ecp5 -nowidelut -top rheogate_board -json rheogate.json"),
+    ("ulx3s-85f", "synth_ecp5 -top rheogate_board -json rheogate.json"),
+])
+def test_a_crowded_device_gets_no_tables_that_must_stand_side_by_side(name, line, tmp_path, monkeypatch):
+    cells_json = '{"design": {"num_cells_by_type": {}}}'
+    monkeypatch.setattr(tools, "run", lambda folder, *command: (folder / "rheogate.cells.json").write_text(cells_json))
+    tools.synthesise(boards.load(name), "", tmp_path)
+    assert line in (tmp_path / "rheogate.ys").read_text().splitlines()
+
+
 BLINK = """
 module rheogate_board(input clk, rx, reset, output tx, busy, locked);
   wire clock;

@@ -115,7 +115,7 @@ def test_a_key_that_is_missing_or_of_another_type(path, refused):
     ("lanes = 4", "lanes = 99", "circuit.lanes must be a whole number from 1 to 6, not 99"),
     ("lanes = 4", "lanes = 4.5", "circuit.lanes must be a whole number, not 4.5"),
     ("grade = 6", "grade = 6\nspeed = 6", "speed must not be there: the keys known here are family, device, package, "
-     "grade, target_mhz, oscillator_mhz, clock_mhz, baud, loader, pins, holds, circuit, limits_mhz"),
+     "grade, target_mhz, oscillator_mhz, clock_mhz, baud, loader, pins, holds, circuit, limits_mhz, crowded"),
     ("luts =", "slices = 1\nluts =", "holds.slices must not be there: the keys known here are luts, ffs, multipliers, "
      "block_rams"),
 ])

@@ -52,7 +52,7 @@ def tools_aside(monkeypatch, tmp_path):
     """No tool runs, and nothing is written to the checkout; the clock that each seed gives, to be changed."""
     clocks = {1: 120.004, 2: 133.0, 3: 101.5, 7: 250.0}
     monkeypatch.setattr(flow, "framed", lambda parameters: f"// {parameters.lanes} lanes\n")
-    monkeypatch.setattr(tools, "synthesise", lambda verilog, folder, name: STATISTICS)
+    monkeypatch.setattr(tools, "synthesise", lambda verilog, folder, name, board=None: STATISTICS)
     monkeypatch.setattr(tools, "place_and_route", lambda board, folder, name, seed: reported(clocks[seed]))
     monkeypatch.setattr(command, "ROOT", tmp_path)
     monkeypatch.setattr(command, "OUT", tmp_path / "build")

@@ -23,6 +23,13 @@ def test_a_tool_that_fails_is_named(tmp_path, monkeypatch):
         tools.synthesise("", tmp_path, "mine")
 
 
+@pytest.mark.parametrize(("name", "told"), [("ulx3s-25f", " -nowidelut"), ("ulx3s-85f", "")])
+def test_a_board_is_timed_as_it_is_built(name, told, tmp_path, monkeypatch):
+    monkeypatch.setattr(tools, "run", lambda folder, *command: (folder / "mine.cells.json").write_text("{}"))
+    tools.synthesise("", tmp_path, "mine", boards.load(name))
+    assert f"\nsynth_ecp5{told} -top timing -json mine.netlist.json\n" in (tmp_path / "mine.ys").read_text()
+
+
 def test_a_netlist_is_placed_once_with_each_seed(tmp_path, monkeypatch):
     """And again when it has changed, or when the tool failed on it."""
     program, runs = tmp_path / tools.PLACE_AND_ROUTE, tmp_path / "runs"

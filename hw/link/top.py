@@ -1,6 +1,6 @@
 """The circuit behind its link: two wires are all that leads to it."""
 
-from amaranth.hdl import Module
+from amaranth.hdl import Cat, Module, ResetSignal, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -52,6 +52,10 @@ class Linked(wiring.Component):
         m.submodules.device = device = Device(key=self.key, identity=self.identity.items, state=state)
         m.submodules.receiver = receiver = Receiver(self._bit_cycles)
         m.submodules.transmitter = transmitter = Transmitter(self._bit_cycles)
+        # Much hangs on the reset of each of them, and they are far from one another
+        core.reset, device.reset = near = [Signal(name=f"{name}_reset", init=1, reset_less=True)
+                                           for name in ("core", "device")]
+        m.d.sync += Cat(near).eq(Cat(ResetSignal(), near[0]))
         m.d.comb += [
             receiver.rx.eq(self.rx),
             self.tx.eq(transmitter.tx),

