@@ -29,7 +29,15 @@ CELLS = {
 
 @pytest.fixture
 def aside(monkeypatch, tmp_path):
-    """No tool runs, and nothing is written to the checkout. What the tools find, to be changed; and what was called."""
+    """No tool runs, nothing is written to the checkout, and every board's clock is 100 MHz. What the tools find, to be
+    changed; and what was called."""
+    load = boards.load
+
+    def at_100_mhz(name):
+        board = load(name)
+        board.clock_mhz = 100.0
+        return board
+
     found = {"fmax": 104.0, "cells": {family: dict(kinds) for family, kinds in CELLS.items()}, "called": []}
 
     def place_and_route(board, mhz, folder):
@@ -40,6 +48,7 @@ def aside(monkeypatch, tmp_path):
         found["called"].append("pack")
         tools.bitstream(board, folder).write_bytes(b"bits")
 
+    monkeypatch.setattr(command.boards, "load", at_100_mhz)
     monkeypatch.setattr(flow, "board_top", lambda board, parameters: (f"// {parameters.lanes}\n", board.clock_mhz))
     monkeypatch.setattr(tools, "run", lambda folder, tool, *arguments: (folder / "rheogate.cells.json").write_text(
         json.dumps({"design": {"num_cells_by_type": found["cells"][found["family"]]}})))
