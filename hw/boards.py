@@ -70,16 +70,6 @@ class Circuit(Struct, forbid_unknown_fields=True):
     tables: int
     axes: int = Parameters.axes
 
-    @property
-    def updated(self) -> str:
-        """Nodes per cycle."""
-        return str(self.updates) if self.axes == Parameters.axes else f"{self.updates}/{Parameters.axes // self.axes}"
-
-    @property
-    def text(self) -> str:
-        counts = {name: str(getattr(self, name)) for name in Parameters.RANGES} | {"updates": self.updated}
-        return ", ".join(f"{n} {name.removesuffix('s') if n == '1' else name}" for name, n in counts.items())
-
 
 class Board(Struct, forbid_unknown_fields=True):
     family: str

@@ -11,7 +11,7 @@ from golden.files import write_text
 
 from . import manifest
 from .families import FAMILIES
-from .parameters import Parameters
+from .parameters import Parameters, counted
 from .verilog import emit
 
 ROOT = Path(__file__).parents[1]
@@ -50,10 +50,8 @@ def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
 
 
 def describe(p: Parameters) -> str:
-    counts = {name: getattr(p, name) for name in p.RANGES}
-    words = [f"{count} {name if count > 1 else name.removesuffix('s')}" for name, count in counts.items()]
-    words += [f"{p.formats.operand}-bit operands", f"{p.formats.state}-bit states"]
-    return ", ".join(words) + (f", for {p.family}" if FAMILIES[p.family] else "")
+    formats = f"{p.formats.operand}-bit operands, {p.formats.state}-bit states"
+    return f"{counted(p)}, {formats}" + (f", for {p.family}" if FAMILIES[p.family] else "")
 
 
 def key_of(parameters: Parameters) -> str:

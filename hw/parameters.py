@@ -118,6 +118,17 @@ class Parameters:
         return (max(self.rows, self.nodes, self.materials, table) - 1).bit_length()
 
 
+def updated(sizes) -> str:
+    """Nodes that are updated per cycle, of `Parameters` or anything with the same sizes."""
+    return str(sizes.updates) if sizes.axes == len(AXES) else f"{sizes.updates}/{len(AXES) // sizes.axes}"
+
+
+def counted(sizes) -> str:
+    """All sizes, for a sentence."""
+    counts = {name: str(getattr(sizes, name)) for name in Parameters.RANGES} | {"updates": updated(sizes)}
+    return ", ".join(f"{n} {name.removesuffix('s') if n == '1' else name}" for name, n in counts.items())
+
+
 def node_place(node: Value, updates: int) -> tuple[Value, Value]:
     """(row, column) of a node's number: the updater ``column`` holds it as its ``row``."""
     bits = updates.bit_length() - 1

@@ -48,12 +48,6 @@ def test_a_circuit_has_a_size_of_each_kind():
     assert set(Parameters.SIZES) <= set(Result.__struct_fields__)
 
 
-def test_nodes_that_are_updated_per_cycle_are_less_than_one_if_their_axes_have_turns():
-    circuit = {"lanes": 1, "nodes": 2, "edges": 1, "materials": 1, "tables": 1}
-    assert [boards.Circuit(**circuit, updates=updates, axes=axes).updated for updates in (1, 2) for axes in (3, 1)] == \
-           ["1", "1/3", "2", "2/3"]
-
-
 def test_an_unknown_board_lists_those_known():
     with pytest.raises(InputError, match=f"^--board must be {' or '.join(boards.names())}, not 'ulx3s'$"):
         boards.load("ulx3s")

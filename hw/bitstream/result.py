@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from .. import boards
 from ..boards import Board, Circuit, shares
+from ..parameters import counted, updated
 
 KEPT = boards.FOLDER / "builds"
-SHOWN = "lanes", "updated", "nodes", "edges"
 
 
 class Build(Circuit, forbid_unknown_fields=True, kw_only=True):
@@ -47,7 +47,7 @@ def table(build: Build, board: Board) -> str:
     """What a terminal shows of a build."""
     fmax = "" if build.fmax_mhz is None else f", {build.fmax_mhz:.1f} MHz reached"
     lines = [
-        f"{build.board} ({board.device}): {build.text}",
+        f"{build.board} ({board.device}): {counted(build)}",
         f"clock {build.clock_mhz:g} MHz{fmax}; line {build.baud} baud",
         *(f"{name:11}{used:8} of{of:8}{used / of:6.0%}" for name, used, of in shares(build, board)),
         build.state(board),
@@ -70,13 +70,16 @@ def published(kept: dict[str, Build]) -> str:
 
 def _cells(build: Build | None, board: Board) -> list[str]:
     if build is None:
-        sizes = [str(getattr(board.circuit, name)) for name in SHOWN]
-        return [*sizes, f"{board.clock_mhz:g} MHz", *[""] * 5, "not built yet", "no"]
+        return [*_sizes(board.circuit), f"{board.clock_mhz:g} MHz", *[""] * 5, "not built yet", "no"]
     return [
-        *(str(getattr(build, name)) for name in SHOWN),
+        *_sizes(build),
         f"{build.clock_mhz:g} MHz",
         "" if build.fmax_mhz is None else f"{build.fmax_mhz:.1f} MHz",
         *(f"{used} ({used / of:.0%})" for _, used, of in shares(build, board)),
         build.state(board),
         "no",
     ]
+
+
+def _sizes(circuit: Circuit) -> list[str]:
+    return [str(circuit.lanes), updated(circuit), str(circuit.nodes), str(circuit.edges)]

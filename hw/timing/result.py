@@ -12,6 +12,7 @@ from golden.files import write_text
 from .. import boards
 from ..boards import Board, Circuit, Limits, shares
 from ..cells import Sizes
+from ..parameters import counted, updated
 from .report import Step
 
 KEPT = boards.FOLDER / "timing"
@@ -58,7 +59,7 @@ def table(result: Result, board: Board) -> str:
     runs = ", ".join(f"{mhz:.1f}" for mhz in result.fmax_mhz)
     limits = f"multiplier {result.limits_mhz.multiplier:g} MHz, block RAM {result.limits_mhz.block_ram:g} MHz"
     lines = [
-        f"{result.board} ({board.device}, speed grade {result.grade}): {result.text}",
+        f"{result.board} ({board.device}, speed grade {result.grade}): {counted(result)}",
         "",
         f"Fmax    {result.fmax_min:.1f} MHz at least, {result.fmax_median:.1f} MHz median of {runs}",
         f"limits  {limits}: not seen by place and route",
@@ -93,7 +94,7 @@ def _cells(result: Result, board: Board) -> list[str]:
     limit = min(result.limits_mhz.multiplier, result.limits_mhz.block_ram)
     clocks = result.fmax_min, result.fmax_median, limit, result.clock_mhz
     return [
-        *(str(getattr(result, name)) for name in ("lanes", "updated", "nodes", "edges")),
+        str(result.lanes), updated(result), str(result.nodes), str(result.edges),
         *(f"{used} ({used / available:.0%})" for _, used, available in shares(result, board)),
         *(f"{mhz:.1f} MHz" for mhz in clocks),
     ]
