@@ -180,8 +180,6 @@ class Graph:
                 taken.add(operand.name)
 
 
-
-
 def flatten(name, value, axes=AXES):
     if isinstance(value, list):
         return [(f"{name}_{axis}", item) for axis, item in zip(axes, value, strict=False)]

@@ -1,5 +1,7 @@
 """The host's access to the memories of lanes, node updaters and lists."""
 
+from functools import cached_property
+
 from amaranth.hdl import Array, Cat, Module, Signal
 
 from golden.graph import AXES
@@ -49,13 +51,14 @@ class Access:
                 updater.host_write_mass.eq(self._node_strobes(["inverse_mass"], number)),
             ]
             if self._parameters.turns > 1:
-                self._m.d.comb += updater.host_axis.eq(self._axis())
+                self._m.d.comb += updater.host_axis.eq(self._axis)
             reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
             reads += [updater.host_mass, entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
             nodes.append(self._chosen(reads, f"node{number}"))
         column = self._parameters.node_place(self._host.index)[1]
         self._m.d.comb += self._host.node_word.eq(self._then_chosen(nodes, column, "node"))
 
+    @cached_property
     def _axis(self):
         """That of a node's word, beside its index."""
         suffixes = (word.rpartition("_")[2] for word in Map(self._parameters).words(Region.NODE))

@@ -191,6 +191,14 @@ def test_files_that_are_kept_are_builds_of_the_boards_own_circuits():
                {size: getattr(board.circuit, size) for size in Parameters.SIZES}
 
 
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", sorted(command.kept()))
+def test_builds_that_are_published_are_of_the_verilog_as_it_is(name):
+    board = boards.load(name)
+    verilog, _ = flow.board_top(board, board.parameters())
+    assert command.kept()[name].verilog_sha256 == hashlib.sha256(verilog.encode()).hexdigest()
+
+
 def test_the_tools_are_told_device_and_files(tmp_path, monkeypatch):
     called = []
     monkeypatch.setattr(tools, "run", lambda folder, *command: called.append(" ".join(command)))
