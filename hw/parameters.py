@@ -25,8 +25,8 @@ class Parameters:
     updates : int
         Nodes updated per cycle, 1 or 2: node updaters, each with its share of every memory of nodes.
     axes : int
-        Axes of a node that an updater takes per cycle: 3, or 1, with which it is about a third as large and takes as
-        many cycles for a node.
+        Axes of a node that an updater takes per cycle: 3, or 1, with which it is little more than a third as large
+        and takes three cycles for a node.
     nodes, edges, materials, tables : int
         Capacity. Each lane holds ``edges / lanes`` edges, rounded up.
     formats : Formats

@@ -61,8 +61,9 @@ class Driver(RuleBasedStateMachine):
 
     def give_up(self):
         """A port that is closed sends what it still has: more than a session's time, if it was said again and again."""
-        self.board, self.machine = None, None
+        self.board, self.machine, until = None, None, self.line.clock() + LONGEST
         while not self.circuit.idle:
+            assert self.line.clock() < until, "the circuit doesn't come to rest"
             self.circuit.run(b"", 2000)
 
     @precondition(lambda self: self.board)
