@@ -1,8 +1,8 @@
-"""What each operation of the datapath costs in registers, per device family, in one place."""
+"""What each operation of the datapath costs in registers, in one place."""
 
 from dataclasses import dataclass
 
-from golden.graph import AXES, IN_TURN, Node
+from golden.graph import Node
 
 from .blocks.gather import GATHERED
 from .blocks.memory import READ_LATENCY
@@ -49,7 +49,7 @@ class Cost:
         """Cycles from a node's operands to its value."""
         registers = getattr(self, node.kind)
         vector, _, axis = node.name.rpartition("_")
-        more = (vector if axis in (*AXES, *IN_TURN) else node.name) in self.more
+        more = (vector if axis in node.graph.axes else node.name) in self.more
         return (registers * step_count(node) if node.kind == "sum" else registers) + more
 
     def narrow_product(self, node: Node) -> bool:
@@ -60,6 +60,3 @@ class Cost:
     def __post_init__(self):
         if self.mul < 2:
             raise ValueError(f"mul must be at least 2 registers, not {self.mul!r}")
-
-
-FAMILIES = {"generic": Cost()}

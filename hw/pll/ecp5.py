@@ -2,8 +2,8 @@
 
 from . import Limits
 
-# As LiteX and Project Trellis's ecppll have them, but for the phase detector's, which is from memory. The data sheet,
-# FPGA-DS-02012, "sysCLOCK PLL Timing", was not at hand
+# As LiteX and Project Trellis's ecppll have them, both from the data sheet, FPGA-DS-02012, "sysCLOCK PLL Timing"; but
+# for the slowest comparison of phases: ecppll takes 3.125 MHz, which the data sheet, as remembered, doesn't allow
 LIMITS = Limits(
     "ecp5", oscillator=(8, 400), phase=(10, 400), oscillation=(400, 800), clock=(3.125, 400),
     divide=(1, 128), multiply=(1, 80), output=(1, 128),

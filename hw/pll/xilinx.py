@@ -2,8 +2,9 @@
 
 from . import Limits
 
-# For the slowest speed grade: the oscillation as LiteX has it, phase detector, clock and dividers from memory. The data
-# sheet, DS181, was not at hand; the vendor's tool refuses what is beyond it
+# For the slowest speed grade: oscillator, comparison of phases and oscillation as others quote the data sheet, DS181
+# (table 38, "PLL Specification"), multiplier and the output's divider as UG953 has them. From memory: the other divider,
+# and 464 MHz, which a global buffer takes, where the PLL gives more. The vendor's tool refuses what it can't make
 LIMITS = Limits(
     "xilinx", oscillator=(19, 800), phase=(19, 450), oscillation=(800, 1600), clock=(6.25, 464),
     divide=(1, 56), multiply=(2, 64), output=(1, 128),
