@@ -21,8 +21,8 @@ def on_boards(scene: Scene, folder=None) -> list[dict]:
     """What a step would take on each board whose device the tools time.
 
     ``timed`` says whether there is a timing result of the board, ``fits`` whether its circuit holds the scene; with
-    both the cycles of a step are those of the cycle model (`sim.cycles`), and ``clock_mhz``, ``step_us`` and
-    ``real_time`` (simulated time / time) follow.
+    both the cycles of a step are those of the cycle model (`sim.cycles`), and ``step_us`` and ``real_time`` (simulated
+    time / time) follow; ``lanes``, ``updates``, ``axes`` and ``clock_mhz`` say of which circuit.
     """
     from hw import boards
     from hw.timing import result as timing  # Amaranth is slow to load
@@ -50,7 +50,7 @@ def _timed(scene: Scene, timing) -> dict:
     from sim.cycles import Wavefront
 
     parameters = Parameters(**{name: getattr(timing, name) for name in Parameters.SIZES})
-    sizes = {"lanes": parameters.lanes, "updates": parameters.updates, "clock_mhz": timing.clock_mhz}
+    sizes = {name: getattr(parameters, name) for name in ("lanes", "updates", "axes")} | {"clock_mhz": timing.clock_mhz}
     try:
         cycles = Wavefront(limits.load(scene).image, parameters).per_step()
     except InputError:  # too small for it

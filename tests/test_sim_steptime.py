@@ -39,9 +39,19 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     parameters = Parameters(**{name: TIMING[name] for name in Parameters.RANGES})
     cycles = Wavefront(limits.load(scene).image, parameters).per_step()
     assert cycles >= RK4.stages * len(scene.mesh.edges) / 2
-    assert found == {"board": "ulx3s-85f", "timed": True, "lanes": 2, "updates": 1, "clock_mhz": 90.0, "fits": True,
-                     "cycles_per_step": cycles, "step_us": cycles / 90.0,
+    assert found == {"board": "ulx3s-85f", "timed": True, "lanes": 2, "updates": 1, "axes": 3, "clock_mhz": 90.0,
+                     "fits": True, "cycles_per_step": cycles, "step_us": cycles / 90.0,
                      "real_time": pytest.approx(scene.dt / (cycles / 90e6))}
+
+
+def test_a_board_whose_updater_takes_an_axis_at_a_time_says_so_and_takes_longer(tmp_path):
+    for axes in (3, 1):
+        (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"axes": axes, "lanes": 4}))
+        found = next(board for board in steptime.on_boards(block(), tmp_path) if board["timed"])
+        assert found["axes"] == axes
+        if axes == 3:
+            whole = found["cycles_per_step"]
+    assert found["cycles_per_step"] > whole
 
 
 def test_the_clock_of_a_board_is_that_of_its_result(tmp_path):

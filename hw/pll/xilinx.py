@@ -3,8 +3,8 @@
 from . import Limits
 
 # For the slowest speed grade: oscillator, comparison of phases and oscillation as others quote the data sheet, DS181
-# (table 38, "PLL Specification"), multiplier and the output's divider as UG953 has them. From memory: the other divider,
-# and 464 MHz, which a global buffer takes, where the PLL gives more. The vendor's tool refuses what it can't make
+# (table 38, "PLL Specification"), multiplier and output divider as UG953 has them. From memory: the other divider, and
+# 464 MHz, which a global buffer takes, where the PLL gives more. The vendor's tool refuses what it can't make
 LIMITS = Limits(
     "xilinx", oscillator=(19, 800), phase=(19, 450), oscillation=(800, 1600), clock=(6.25, 464),
     divide=(1, 56), multiply=(2, 64), output=(1, 128),
