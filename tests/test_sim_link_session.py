@@ -63,6 +63,15 @@ def test_a_host_whose_rate_is_two_per_cent_off_is_understood(error, rng):
     assert [items(answer.payload)[1:] for answer in answers] == [words[:30]] * 5 and not session.retries
 
 
+@pytest.mark.parametrize("error", [-0.5, 1.0])
+def test_a_host_with_another_rate_gets_no_answer(error, rng):
+    circuit = serial_circuit(host_error=error)
+    line = NoisyLine(circuit, rng, 0)
+    with pytest.raises(NoAnswer, match="have the rate of --baud"):
+        Session(line, lambda identity: key(SMALL), TIMEOUT, clock=line.clock)
+    circuit.close()
+
+
 def test_a_silent_line_is_given_up(rng):
     class Dead:
         url = "nowhere"
@@ -74,7 +83,8 @@ def test_a_silent_line_is_given_up(rng):
             return b""
 
     with pytest.raises(NoAnswer, match=r"--port must lead to a circuit that answers, but nowhere was silent for 0.06 s "
-                                       r"\(0 damaged frames came\)"):
+                                       r"\(0 damaged frames came\): it must be loaded \(make flash\) and have the rate "
+                                       "of --baud"):
         Session(Dead(), lambda identity: key(SMALL), timeout=0.01)
 
 

@@ -87,7 +87,8 @@ class Session:
             self.retries += 1
             self._send(under_way)
         raise NoAnswer(f"--port must lead to a circuit that answers, but {getattr(self._line, 'url', 'it')} was silent "
-                       f"for {self._attempts * self._timeout:.3g} s ({self.damaged} damaged frames came)")
+                       f"for {self._attempts * self._timeout:.3g} s ({self.damaged} damaged frames came): it must be "
+                       "loaded (make flash) and have the rate of --baud")
 
     def _greet(self) -> Identity:
         """Begin a session: whatever was before it is over, on the line too."""
