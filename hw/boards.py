@@ -12,7 +12,7 @@ from golden.errors import InputError
 from golden.schema import Count, Positive
 
 from .families import FAMILIES
-from .parameters import Parameters
+from .parameters import Parameters, updated
 
 FOLDER = Path(__file__).parents[1] / "constraints"
 DEVICES = {
@@ -120,6 +120,15 @@ def load(name: str, folder: Path = FOLDER) -> Board:
         raise InputError(f"{path}: the board must be a TOML file: {error}") from None
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+SIZES = "lanes | updates | nodes | edges"
+"""Columns of a table of boards."""
+
+
+def sizes_of(circuit: Circuit) -> list[str]:
+    """What stands in the columns `SIZES`."""
+    return [str(circuit.lanes), updated(circuit), str(circuit.nodes), str(circuit.edges)]
 
 
 def shares(sizes, board: Board) -> list[tuple[str, int, int]]:

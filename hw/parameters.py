@@ -1,6 +1,7 @@
 """The parameters of a circuit: how much it holds, how wide its words are, what its device's registers cost."""
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 from amaranth.hdl import Const, Value
 
@@ -54,7 +55,7 @@ class Parameters:
     cost: Cost = field(default_factory=Cost)
     family: str = "generic"
 
-    RANGES = {  # noqa: RUF012 (a constant)
+    RANGES: ClassVar[dict[str, tuple[int, int]]] = {
         "lanes": (1, NODE["mask"].width // 2),
         "updates": (1, 2),
         "nodes": (2, EDGE["i"].raw_max + 1),
@@ -62,7 +63,7 @@ class Parameters:
         "materials": (1, EDGE["material"].raw_max + 1),
         "tables": (1, 16),
     }
-    SIZES = (*RANGES, "axes")
+    SIZES: ClassVar[tuple[str, ...]] = (*RANGES, "axes")
 
     def __post_init__(self):
         for name, (low, high) in self.RANGES.items():
@@ -80,7 +81,7 @@ class Parameters:
     @property
     def turns(self) -> int:
         """Cycles that an updater takes for a node."""
-        return len(AXES) // self.axes
+        return turns(self)
 
     @property
     def rows(self) -> int:
@@ -118,9 +119,14 @@ class Parameters:
         return (max(self.rows, self.nodes, self.materials, table) - 1).bit_length()
 
 
+def turns(sizes) -> int:
+    """Cycles that an updater takes for a node, of `Parameters` or anything with the same sizes."""
+    return len(AXES) // sizes.axes
+
+
 def updated(sizes) -> str:
-    """Nodes that are updated per cycle, of `Parameters` or anything with the same sizes."""
-    return str(sizes.updates) if sizes.axes == len(AXES) else f"{sizes.updates}/{len(AXES) // sizes.axes}"
+    """Nodes that are updated per cycle."""
+    return str(sizes.updates) if turns(sizes) == 1 else f"{sizes.updates}/{turns(sizes)}"
 
 
 def counted(sizes) -> str:

@@ -45,13 +45,13 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
 
 
 def test_a_board_whose_updater_takes_an_axis_at_a_time_says_so_and_takes_longer(tmp_path):
-    for axes in (3, 1):
+    def timed(axes):
         (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"axes": axes, "lanes": 4}))
-        found = next(board for board in steptime.on_boards(block(), tmp_path) if board["timed"])
-        assert found["axes"] == axes
-        if axes == 3:
-            whole = found["cycles_per_step"]
-    assert found["cycles_per_step"] > whole
+        return next(board for board in steptime.on_boards(block(), tmp_path) if board["timed"])
+
+    whole, in_turn = timed(3), timed(1)
+    assert (whole["axes"], in_turn["axes"]) == (3, 1)
+    assert in_turn["cycles_per_step"] > whole["cycles_per_step"]
 
 
 def test_the_clock_of_a_board_is_that_of_its_result(tmp_path):

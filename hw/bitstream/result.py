@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from .. import boards
-from ..boards import Board, Circuit, shares
-from ..parameters import counted, updated
+from ..boards import SIZES, Board, Circuit, shares, sizes_of
+from ..parameters import counted
 
 KEPT = boards.FOLDER / "builds"
 
@@ -55,7 +55,7 @@ def table(build: Build, board: Board) -> str:
     return "\n".join(lines)
 
 
-HEAD = "| board | device | lanes | updates | nodes | edges | clock | Fmax " \
+HEAD = f"| board | device | {SIZES} | clock | Fmax " \
        "| LUT | FF | multipliers | block RAMs | state | run on hardware |"
 
 
@@ -70,16 +70,12 @@ def published(kept: dict[str, Build]) -> str:
 
 def _cells(build: Build | None, board: Board) -> list[str]:
     if build is None:
-        return [*_sizes(board.circuit), f"{board.clock_mhz:g} MHz", *[""] * 5, "not built yet", "no"]
+        return [*sizes_of(board.circuit), f"{board.clock_mhz:g} MHz", *[""] * 5, "not built yet", "no"]
     return [
-        *_sizes(build),
+        *sizes_of(build),
         f"{build.clock_mhz:g} MHz",
         "" if build.fmax_mhz is None else f"{build.fmax_mhz:.1f} MHz",
         *(f"{used} ({used / of:.0%})" for _, used, of in shares(build, board)),
         build.state(board),
         "no",
     ]
-
-
-def _sizes(circuit: Circuit) -> list[str]:
-    return [str(circuit.lanes), updated(circuit), str(circuit.nodes), str(circuit.edges)]

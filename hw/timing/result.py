@@ -10,9 +10,9 @@ from msgspec import Struct
 from golden.files import write_text
 
 from .. import boards
-from ..boards import Board, Circuit, Limits, shares
+from ..boards import SIZES, Board, Circuit, Limits, shares, sizes_of
 from ..cells import Sizes
-from ..parameters import counted, updated
+from ..parameters import counted
 from .report import Step
 
 KEPT = boards.FOLDER / "timing"
@@ -75,7 +75,7 @@ def table(result: Result, board: Board) -> str:
     return "\n".join(lines)
 
 
-HEAD = "| board | lanes | updates | nodes | edges " \
+HEAD = f"| board | {SIZES} " \
        "| LUT | FF | multipliers | block RAMs | Fmax, lowest | median | limit | clock |"
 
 
@@ -94,7 +94,7 @@ def _cells(result: Result, board: Board) -> list[str]:
     limit = min(result.limits_mhz.multiplier, result.limits_mhz.block_ram)
     clocks = result.fmax_min, result.fmax_median, limit, result.clock_mhz
     return [
-        str(result.lanes), updated(result), str(result.nodes), str(result.edges),
+        *sizes_of(result),
         *(f"{used} ({used / available:.0%})" for _, used, available in shares(result, board)),
         *(f"{mhz:.1f} MHz" for mhz in clocks),
     ]
