@@ -54,6 +54,7 @@ verify: environment ## run the tests and the long campaigns behind the published
 
 lint: environment ## check the style of all Python files
 	@$(run) -m ruff check --quiet .
+	@$(run) -m ruff format --check --quiet .
 
 lock: ## resolve the pins of pyproject.toml again and write requirements.lock
 	@$(PYTHON) environment.py --lock

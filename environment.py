@@ -5,6 +5,7 @@
 
 Standard library only, no syntax newer than Python 3.6: an old `python3` must reach the line that refuses it.
 """
+
 import ctypes
 import ctypes.util
 import fcntl
@@ -61,8 +62,10 @@ def browser():
 def missing():
     """One line for each thing the machine lacks and pip can't bring, with what to install."""
     if sys.version_info < OLDEST:
-        return [f"python3 must be Python {OLDEST[0]}.{OLDEST[1]} or newer, not {VERSION}: install one, "
-                "or name the one to use: make PYTHON=python3.12"]
+        return [
+            f"python3 must be Python {OLDEST[0]}.{OLDEST[1]} or newer, not {VERSION}: install one, "
+            "or name the one to use: make PYTHON=python3.12"
+        ]
     return [f"{what} is missing: {install_it(package)}" for what, package, there in checked() if not there]
 
 

@@ -34,8 +34,9 @@ def parser() -> Parser:
     main = Parser(prog="python -m golden", description="The specification one can run.")
     commands = main.add_subparsers(dest="command", required=True, metavar="mesh")
     command = commands.add_parser("mesh", help="look at a mesh, or make one")
-    command.add_argument("what", metavar="FILE|KIND",
-                         help=f"a mesh file (Gmsh, VTK, VTU, OBJ, PLY), or one of {', '.join(MADE)}")
+    command.add_argument(
+        "what", metavar="FILE|KIND", help=f"a mesh file (Gmsh, VTK, VTU, OBJ, PLY), or one of {', '.join(MADE)}"
+    )
     for name, (kind, letter, meaning) in OPTIONS.items():
         several = {"nargs": "+"} if name in ("size", "nodes") else {}
         command.add_argument(f"--{name}", type=_number(kind), metavar=letter, help=meaning, **several)
@@ -83,8 +84,9 @@ def _table(args) -> schema.Mesh:
     given = {name: value for name in OPTIONS if (value := getattr(args, name)) is not None}
     what = f"a {args.what}" if args.what in MADE else "a file"
     if strange := given.keys() - set(known):
-        raise InputError(f"--{min(strange)} must not be given with {what}, which has "
-                         f"{', '.join(f'--{name}' for name in known)}")
+        raise InputError(
+            f"--{min(strange)} must not be given with {what}, which has {', '.join(f'--{name}' for name in known)}"
+        )
     kind = {"kind": args.what} if args.what in MADE else {"kind": "file", "file": args.what}
     try:
         return schema.convert(kind | given, schema.KINDS[kind["kind"]])
@@ -101,8 +103,10 @@ def _free(path: Path, force: bool) -> Path:
     if not path.parent.is_dir():
         raise InputError(f"--out must be in a folder that is there, not {path.parent}")
     if path.is_dir() or (path.exists() and not force):
-        raise InputError(f"--out must be a new file, not {path}, which is there: choose another"
-                         f"{'' if path.is_dir() else ', or add --force to replace it'}")
+        raise InputError(
+            f"--out must be a new file, not {path}, which is there: choose another"
+            f"{'' if path.is_dir() else ', or add --force to replace it'}"
+        )
     return path
 
 

@@ -23,8 +23,12 @@ def save(scene: Scene, path) -> None:
     arrays |= {name: np.array([getattr(phase, name) for phase in scene.phases]) for name in PHASE}
     with replaced(Path(path)) as file:
         np.savez_compressed(
-            file, allow_pickle=False, **arrays,
-            name=scene.name, description=scene.description, dt=scene.dt,
+            file,
+            allow_pickle=False,
+            **arrays,
+            name=scene.name,
+            description=scene.description,
+            dt=scene.dt,
             phases=[phase.name for phase in scene.phases],
             materials=[material.name for material in scene.materials],
             parameters=_numbers(scene.materials),
@@ -42,12 +46,15 @@ def load(path) -> Scene:
     """The scene in a file that `save` wrote, equal to it but for its path, which is this file."""
     with np.load(path) as archive:
         kept = {name: archive[name] for name in archive}
+
     def materials(numbers):
         pairs = zip(kept["materials"].tolist(), numbers.tolist(), strict=True)
         return tuple(Material(name, *parameters) for name, parameters in pairs)
 
-    brought = [materials(numbers) if switched else None
-               for switched, numbers in zip(kept["switched"], kept["phase_parameters"], strict=True)]
+    brought = [
+        materials(numbers) if switched else None
+        for switched, numbers in zip(kept["switched"], kept["phase_parameters"], strict=True)
+    ]
     phases = zip(kept["phases"].tolist(), *(kept[name] for name in PHASE), brought, strict=True)
     return Scene(
         name=str(kept["name"]),

@@ -30,16 +30,17 @@ def assign(tables: dict[str, Any], mesh: Mesh) -> tuple[tuple[Material, ...], np
         materials.append(_material(name, table, path))
         if "region" not in table:
             if rest is not None:
-                raise InputError(f"{path}.region must be given, as materials.{materials[rest].name} already has what "
-                                 "the others leave")
+                raise InputError(
+                    f"{path}.region must be given, as materials.{materials[rest].name} already has what "
+                    "the others leave"
+                )
             rest = index
             continue
         region = schema.convert(table["region"], Region, f"{path}.region")
         cells = select_cells(region, mesh, f"{path}.region")
         if (taken := np.flatnonzero(cells & (owner >= 0))).size:
             other = materials[owner[taken[0]]].name
-            raise InputError(f"{path}.region must not overlap materials.{other}.region: both hold "
-                             f"{_at(mesh, taken)}")
+            raise InputError(f"{path}.region must not overlap materials.{other}.region: both hold {_at(mesh, taken)}")
         owner[cells] = index
     if rest is not None:
         if (owner >= 0).all():
@@ -71,8 +72,7 @@ def _material(name: str, table: Any, path: str) -> Material:
     if "preset" not in table:
         raise InputError(f"{path}.preset must be given: one of {', '.join(PRESETS)}")
     if table["preset"] not in tuple(PRESETS):
-        raise InputError(f"{path}.preset must be one of {', '.join(PRESETS)}, "
-                         f"not {schema.shown(table['preset'])}")
+        raise InputError(f"{path}.preset must be one of {', '.join(PRESETS)}, not {schema.shown(table['preset'])}")
     preset = PRESETS[table["preset"]]
     expected = dict(list(signature(preset).parameters.items())[1:])  # after the name
     given = {key: value for key, value in table.items() if key not in ("preset", "region")}

@@ -38,8 +38,10 @@ def irregular(radius: float, edge: float, seed: int = 0):
     def outline(angle):
         """How far it is, by the radius, and its slope."""
         turns = np.multiply.outer(angle, waves)
-        return (1 + np.cos(turns) @ height[0] + np.sin(turns) @ height[1],
-                np.cos(turns) @ (waves * height[1]) - np.sin(turns) @ (waves * height[0]))
+        return (
+            1 + np.cos(turns) @ height[0] + np.sin(turns) @ height[1],
+            np.cos(turns) @ (waves * height[1]) - np.sin(turns) @ (waves * height[0]),
+        )
 
     def distance(p):
         far, slope = outline(np.arctan2(p[:, 1], p[:, 0]))
@@ -118,13 +120,15 @@ def _box_surface(size: np.ndarray, edge: float, seed: int) -> np.ndarray:
     for axis, side in enumerate(size):
         count = _pieces(side, edge)
         between = side * np.arange(1, count) / count
-        parts += [np.insert(np.tile(corner, (len(between), 1)), axis, between, axis=1)
-                  for corner in product(*([0.0, other] for other in np.delete(size, axis)))]
+        parts += [
+            np.insert(np.tile(corner, (len(between), 1)), axis, between, axis=1)
+            for corner in product(*([0.0, other] for other in np.delete(size, axis)))
+        ]
         if dim == 3:
             face = np.delete(size, axis)
             rim = _box_surface(face, edge, seed)
             points, _ = beam(face, edge, seed)
-            parts += [np.insert(points[len(rim):], axis, at, axis=1) for at in (0.0, side)]
+            parts += [np.insert(points[len(rim) :], axis, at, axis=1) for at in (0.0, side)]
     return np.concatenate(parts)
 
 

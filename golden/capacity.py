@@ -23,8 +23,11 @@ class Capacity:
 
     def lacks(self, mesh: Mesh) -> str:
         """What of the mesh is too much for it, in words; nothing when it fits."""
-        too_many = [f"{have} {what} of {room}" for what, have, room in (
-            ("nodes", len(mesh.points), self.nodes), ("edges", len(mesh.edges), self.edges)) if have > room]
+        too_many = [
+            f"{have} {what} of {room}"
+            for what, have, room in (("nodes", len(mesh.points), self.nodes), ("edges", len(mesh.edges), self.edges))
+            if have > room
+        ]
         return ", ".join(too_many)
 
 
@@ -36,8 +39,9 @@ def boards(folder: Path = FOLDER) -> list[Capacity]:
             sizes = tomllib.loads(path.read_text(encoding="utf-8"))["circuit"]
             found.append(Capacity(path.stem, int(sizes["nodes"]), int(sizes["edges"])))
         except (KeyError, TypeError, ValueError) as error:
-            raise InputError(f"{path}: circuit.nodes and circuit.edges must be whole numbers in a TOML file "
-                             f"({error})") from None
+            raise InputError(
+                f"{path}: circuit.nodes and circuit.edges must be whole numbers in a TOML file ({error})"
+            ) from None
     return found
 
 

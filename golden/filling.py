@@ -43,8 +43,10 @@ def fill(body: Body, edge: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
         worst = radius_ratio(points[cells]).min() if len(np.unique(cells)) == len(points) else 0.0
         if worst >= WORST[dim]:
             return points, cells
-    raise InputError(f"edge must leave elements with a radius ratio of at least {WORST[dim]}, not {worst:.2g}: "
-                     f"choose a smaller one than {edge:g}, or another seed")
+    raise InputError(
+        f"edge must leave elements with a radius ratio of at least {WORST[dim]}, not {worst:.2g}: "
+        f"choose a smaller one than {edge:g}, or another seed"
+    )
 
 
 def _start(body: Body, edge: float, rng) -> np.ndarray:

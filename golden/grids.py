@@ -24,8 +24,14 @@ def box(nodes, size, tetrahedra: int) -> tuple[np.ndarray, np.ndarray]:
     o, x, y, z = corner(0, 0, 0), corner(1, 0, 0), corner(0, 1, 0), corner(0, 0, 1)
     xy, xz, yz, xyz = corner(1, 1, 0), corner(1, 0, 1), corner(0, 1, 1), corner(1, 1, 1)
     if tetrahedra == 6:  # one for each way from o to xyz along the axes
-        even = odd = [(o, x, xy, xyz), (o, x, xz, xyz), (o, y, xy, xyz),
-                      (o, y, yz, xyz), (o, z, xz, xyz), (o, z, yz, xyz)]
+        even = odd = [
+            (o, x, xy, xyz),
+            (o, x, xz, xyz),
+            (o, y, xy, xyz),
+            (o, y, yz, xyz),
+            (o, z, xz, xyz),
+            (o, z, yz, xyz),
+        ]
     else:  # one in the middle, on every other corner, and one at each of the corners left
         even = [(o, xy, xz, yz), (x, o, xy, xz), (y, o, xy, yz), (z, o, xz, yz), (xyz, xy, xz, yz)]
         odd = [(x, y, z, xyz), (o, x, y, z), (xy, x, y, xyz), (xz, x, z, xyz), (yz, y, z, xyz)]

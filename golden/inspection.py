@@ -31,15 +31,26 @@ def inspect(mesh: Mesh, materials_of: Scene | None = None) -> dict:
         "parts": int(mesh.components()[0]),
         "extent": {"min": mesh.points.min(axis=0).tolist(), "max": mesh.points.max(axis=0).tolist()},
         "measure": float(mesh.measure().sum()),
-        "edge_length": {"min": float(lengths[shortest]), "max": float(lengths.max()),
-                        "shortest": mesh.edges[shortest].tolist()},
-        "radius_ratio": {"min": float(quality[worst]), "mean": float(quality.mean()), "worst_element": worst,
-                         "nodes": mesh.cells[worst].tolist()},
-        "most_edges_at_a_node": {"edges": int(meeting.max()), "node": int(np.argmax(meeting)),
-                                 "allowed": capacity.most_at_a_node(Formats())},
+        "edge_length": {
+            "min": float(lengths[shortest]),
+            "max": float(lengths.max()),
+            "shortest": mesh.edges[shortest].tolist(),
+        },
+        "radius_ratio": {
+            "min": float(quality[worst]),
+            "mean": float(quality.mean()),
+            "worst_element": worst,
+            "nodes": mesh.cells[worst].tolist(),
+        },
+        "most_edges_at_a_node": {
+            "edges": int(meeting.max()),
+            "node": int(np.argmax(meeting)),
+            "allowed": capacity.most_at_a_node(Formats()),
+        },
         "stable_dt": materials_of and stable_dt(mesh, materials_of),
-        "boards": {board.board: {"fits": not board.lacks(mesh), "too_many": board.lacks(mesh)}
-                   for board in capacity.boards()},
+        "boards": {
+            board.board: {"fits": not board.lacks(mesh), "too_many": board.lacks(mesh)} for board in capacity.boards()
+        },
     }
 
 
@@ -52,9 +63,12 @@ def stable_dt(mesh: Mesh, scene: Scene) -> dict[str, float | None]:
     free = Phase("free", 1, nobody, nothing, nobody, nothing)
     mass = mesh.lumped_mass(scene.mass.sum() / scene.mesh.measure().sum())
     everywhere = np.zeros(len(mesh.edges), dtype=int)
-    found = {material.name: stability.largest_dt(replace(
-        scene, mesh=mesh, materials=(material,), edge_material=everywhere, mass=mass, phases=(free,)))[0]
-        for material in scene.materials}
+    found = {
+        material.name: stability.largest_dt(
+            replace(scene, mesh=mesh, materials=(material,), edge_material=everywhere, mass=mass, phases=(free,))
+        )[0]
+        for material in scene.materials
+    }
     return {name: dt if isfinite(dt) else None for name, dt in found.items()}
 
 

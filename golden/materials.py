@@ -103,8 +103,9 @@ def plastic(name: str, c_damper: float) -> Material:
     return Material(name, 0.0, c, c, c, math.inf, math.inf, 0.0, 1.0, 0.5)
 
 
-def rheological(name: str, k: float, c1: float, c2: float, a_min: float = 0.0, a_max: float = 1.0,
-                a0: float = 0.5) -> Material:
+def rheological(
+    name: str, k: float, c1: float, c2: float, a_min: float = 0.0, a_max: float = 1.0, a0: float = 0.5
+) -> Material:
     """Voigt part and damper in series: comes back part of the way."""
     _number("k", k)
     _number("c1", c1, positive=False)
@@ -113,8 +114,18 @@ def rheological(name: str, k: float, c1: float, c2: float, a_min: float = 0.0, a
     return Material(name, k, c1, c2, c2, math.inf, math.inf, a_min, a_max, a0)
 
 
-def rheological_force(name: str, k: float, c1: float, f1: float, f2: float, c_max: float, c_min: float,
-                      a_min: float = 0.0, a_max: float = 1.0, a0: float = 0.5) -> Material:
+def rheological_force(
+    name: str,
+    k: float,
+    c1: float,
+    f1: float,
+    f2: float,
+    c_max: float,
+    c_min: float,
+    a_min: float = 0.0,
+    a_max: float = 1.0,
+    a0: float = 0.5,
+) -> Material:
     """A rheological material whose damper is equation (7): stiff up to the force f1, soft from f2 on."""
     _number("k", k)
     _number("c1", c1, positive=False)

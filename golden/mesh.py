@@ -41,12 +41,16 @@ class Mesh:
             raise InputError("edges must be pairs i < j in ascending order, each given once")
         isolated = np.setdiff1d(np.arange(n), self.edges)
         if len(isolated):
-            raise InputError(f"points must all belong to a cell, but point {isolated[0]} does not: remove it "
-                             f"({len(isolated)} of {n} are isolated)")
+            raise InputError(
+                f"points must all belong to a cell, but point {isolated[0]} does not: remove it "
+                f"({len(isolated)} of {n} are isolated)"
+            )
         if pairs := KDTree(self.points).query_pairs(SAME * self.size):
             i, j = min(pairs)
-            raise InputError(f"points must all differ, but {i} and {j} are at the same place: "
-                             "merge them (an edge of zero length has no direction)")
+            raise InputError(
+                f"points must all differ, but {i} and {j} are at the same place: "
+                "merge them (an edge of zero length has no direction)"
+            )
 
     @property
     def dim(self) -> int:
@@ -99,8 +103,7 @@ def from_cells(points, cells) -> Mesh:
     _check_points(points)
     _check_indices("cells", cells, len(points))
     if pair := _duplicate(np.sort(cells, axis=1)):
-        raise InputError(f"cells must all differ, but cells {pair[0]} and {pair[1]} have the same nodes: "
-                         "remove one")
+        raise InputError(f"cells must all differ, but cells {pair[0]} and {pair[1]} have the same nodes: remove one")
     pairs = list(combinations(range(cells.shape[1]), 2))
     corners = points[cells]
     longest = np.max([np.linalg.norm(corners[:, b] - corners[:, a], axis=1) for a, b in pairs], axis=0)
@@ -158,8 +161,10 @@ def _check_sides(cells: np.ndarray) -> None:
     found, count = np.unique(sides, axis=0, return_counts=True)
     if (many := np.flatnonzero(count > 2)).size:
         kind = "an edge" if cells.shape[1] == 3 else "a face"
-        raise InputError(f"cells must meet two at {kind}, but {count[many[0]]} have the points "
-                         f"{found[many[0]].tolist()}: remove those that overlap")
+        raise InputError(
+            f"cells must meet two at {kind}, but {count[many[0]]} have the points "
+            f"{found[many[0]].tolist()}: remove those that overlap"
+        )
 
 
 def _check_points(points: np.ndarray) -> None:

@@ -28,15 +28,17 @@ def read(path) -> tuple[np.ndarray, np.ndarray]:
     if kind not in cells:
         kind, boundary = "triangle", {"line", "vertex"}
     if kind not in cells:
-        raise InputError(f"file must hold triangles or tetrahedra, not {_listing(cells)} (in {path}): "
-                         f"{FIRST_ORDER}")
+        raise InputError(f"file must hold triangles or tetrahedra, not {_listing(cells)} (in {path}): {FIRST_ORDER}")
     if other := cells.keys() - boundary - {kind}:
-        raise InputError(f"file must hold {kind} cells alone, not {_listing(other)} beside them (in {path}): "
-                         f"{FIRST_ORDER}")
+        raise InputError(
+            f"file must hold {kind} cells alone, not {_listing(other)} beside them (in {path}): {FIRST_ORDER}"
+        )
     if kind == "triangle" and points.shape[1] == 3:
         if np.ptp(points[:, 2]) > 0:
-            raise InputError("file must hold triangles in one plane of constant z, not a surface in space "
-                             f"(in {path}): make the mesh flat, or fill the surface with tetrahedra")
+            raise InputError(
+                "file must hold triangles in one plane of constant z, not a surface in space "
+                f"(in {path}): make the mesh flat, or fill the surface with tetrahedra"
+            )
         points = points[:, :2]
     return points, np.concatenate(cells[kind])
 
@@ -65,8 +67,7 @@ def _read(path: Path) -> tuple[np.ndarray, dict[str, list[np.ndarray]]]:
         raise InputError(f"file must be an existing mesh file, not {path}")
     complaints = io.StringIO()
     try:
-        with (contextlib.redirect_stdout(complaints), contextlib.redirect_stderr(complaints),
-              np.errstate(all="ignore")):
+        with contextlib.redirect_stdout(complaints), contextlib.redirect_stderr(complaints), np.errstate(all="ignore"):
             found = meshio.read(path)
     except (Exception, SystemExit) as error:  # meshio exits, or raises whatever a broken file trips over
         raise InputError(f"file must be a mesh that meshio can read, not {path}") from error

@@ -143,8 +143,10 @@ def simulate(scene: Scene, progress: Callable[[int], object] | None = None) -> T
                     kept.append(_frame(model, done))
                 if done % REPORT_EVERY == 0 or done in wanted:
                     if not all(np.isfinite(s).all() for s in (model.x, model.v, model.a)):
-                        raise InputError(f"dt must be small enough for a finite state, not {scene.dt:g}: "
-                                         f"lost by step {done} in phase {phase.name!r}")
+                        raise InputError(
+                            f"dt must be small enough for a finite state, not {scene.dt:g}: "
+                            f"lost by step {done} in phase {phase.name!r}"
+                        )
                     if progress:
                         progress(done)
     t, x, v, a, reaction = map(np.array, zip(*kept, strict=True))

@@ -27,8 +27,10 @@ def radius_ratio(corners: np.ndarray) -> np.ndarray:
         below = (a + b + c) * a * b * c
         factor = 16
     else:
-        a, b, c = (_distance(corners, *pair) * _distance(corners, *other)
-                   for pair, other in (((0, 1), (2, 3)), ((0, 2), (1, 3)), ((0, 3), (1, 2))))
+        a, b, c = (
+            _distance(corners, *pair) * _distance(corners, *other)
+            for pair, other in (((0, 1), (2, 3)), ((0, 2), (1, 3)), ((0, 3), (1, 2)))
+        )
         product = (a + b + c) * (a + b - c) * (a - b + c) * (b + c - a)  # (24 volume circumradius)^2
         surface = sum(_area(corners[:, face]) for face in map(list, combinations(range(4), 3)))
         below = surface * np.sqrt(np.maximum(product, 0))

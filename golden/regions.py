@@ -119,6 +119,5 @@ def _inside(region: Region, points: np.ndarray, size: float, path: str) -> np.nd
 def _not_empty(selected: np.ndarray, what: str, mesh: Mesh, path: str) -> np.ndarray:
     if not selected.any():
         low, high = mesh.points.min(axis=0).tolist(), mesh.points.max(axis=0).tolist()
-        raise InputError(f"{path} must hold at least one {what}, not none: "
-                         f"the object reaches from {low} to {high}")
+        raise InputError(f"{path} must hold at least one {what}, not none: the object reaches from {low} to {high}")
     return selected

@@ -116,8 +116,10 @@ def _no_part_adrift(phase: Phase, mesh: Mesh, path: str) -> None:
     adrift = np.setdiff1d(part, part[phase.held])
     if count > 1 and adrift.size:
         node = np.flatnonzero(part == adrift[0])[0]
-        raise InputError(f"{path} must fix or drive a node of each of the {count} parts of the mesh that no "
-                         f"edge joins, not leave the part of node {node} free")
+        raise InputError(
+            f"{path} must fix or drive a node of each of the {count} parts of the mesh that no "
+            f"edge joins, not leave the part of node {node} free"
+        )
 
 
 def _frames(table: schema.Frames, phases: tuple[Phase, ...]) -> np.ndarray:

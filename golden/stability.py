@@ -47,7 +47,8 @@ def largest_dt(scene: Scene) -> tuple[float, str, str]:
     """
     scenes = [replace(scene, materials=materials) for materials in scene.material_sets]
     rate, name, reason = max(
-        (_fastest(s, ~held, *law) for s in scenes for held in _held(s) for law in _laws(s)), key=itemgetter(0))
+        (_fastest(s, ~held, *law) for s in scenes for held in _held(s) for law in _laws(s)), key=itemgetter(0)
+    )
     return (TURNING * HALF_DISC / rate if rate else inf), name, reason
 
 
@@ -57,8 +58,10 @@ def check(scene: Scene) -> None:
     if scene.dt > dt:
         unit = 10.0 ** (floor(log10(dt)) - 1)
         stable = floor(dt / unit) * unit
-        raise InputError(f"dt must be at most {stable:.2g} s to be stable, not {scene.dt:g}: "
-                         f"the {reason} of the material {name!r} on these masses limits it")
+        raise InputError(
+            f"dt must be at most {stable:.2g} s to be stable, not {scene.dt:g}: "
+            f"the {reason} of the material {name!r} on these masses limits it"
+        )
 
 
 def _held(scene: Scene) -> list[np.ndarray]:
@@ -74,7 +77,8 @@ def _laws(scene: Scene):
     than that or than with a free ratio. At a_min = 0 no ratio rests: the natural length L pushes it away.
     """
     k, c1, c_max, c_min, f1, f2, a_min, a_max = (
-        scene.per_edge(name) for name in ("k", "c1", "c_max", "c_min", "f1", "f2", "a_min", "a_max"))
+        scene.per_edge(name) for name in ("k", "c1", "c_max", "c_min", "f1", "f2", "a_min", "a_max")
+    )
     soft = c_max.copy()
     varying = c_max != c_min
     # d|f| / d(rate) of the damper just below f2: it yields faster than c_min, its coefficient falls with |f|
@@ -96,7 +100,7 @@ def _fastest(scene: Scene, free, damping, kappa, delta) -> tuple[float, str, str
     s = diags_array(np.sqrt(kappa)) @ b
     matrix = csr_array(block_array([[-(b.T @ diags_array(damping) @ b), -s.T], [s, -diags_array(delta)]]))
     rate, mode = _dominant(matrix)
-    ldot, z = np.abs(b @ mode[: b.shape[1]]), np.abs(mode[b.shape[1]:])
+    ldot, z = np.abs(b @ mode[: b.shape[1]]), np.abs(mode[b.shape[1] :])
     by_damping = _per_material(scene, damping * ldot**2)
     by_stiffness = _per_material(scene, 2 * np.sqrt(kappa) * ldot * z + delta * z**2)
     limiting = np.argmax(by_damping + by_stiffness)

@@ -79,8 +79,10 @@ def _refuse_strangers(folder: Path):
     for name in (VERILOG, MANIFEST):
         path = folder / name
         if path.exists() and not _ours(path):
-            raise InputError(f"--out must be a folder without another tool's {name}, not {folder}: choose another, or "
-                             "add --force to replace it")
+            raise InputError(
+                f"--out must be a folder without another tool's {name}, not {folder}: choose another, or "
+                "add --force to replace it"
+            )
 
 
 def _ours(path: Path) -> bool:

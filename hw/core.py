@@ -193,8 +193,7 @@ class Core(wiring.Component):
         words, self._edge_entries = [], []
         for number in range(p.lanes):
             write = self._access.strobe(Region.EDGE, 0, number)
-            entries = self._entries(
-                f"edge_entries{number}", record, p.rows, fetch.address, self._access.index, write)
+            entries = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._access.index, write)
             words.append(entries.entry)
             self._edge_entries.append(entries.data)
         edges = [unpack(record, word) for word in words]

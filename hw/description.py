@@ -60,7 +60,10 @@ def dump(contents: dict) -> str:
 
 def _register(register, read_only, texts):
     return {
-        "index": register.value, "name": register.name, "read_only": read_only, "meaning": texts[register],
+        "index": register.value,
+        "name": register.name,
+        "read_only": read_only,
+        "meaning": texts[register],
     }
 
 

@@ -159,8 +159,11 @@ class Lane(wiring.Component):
         entry, width = fronts["row"].entry, len(self.edge_behind)
         self._issued = unpack(records.edge_entry(), entry[:width])
         self._issued["valid"] = self._issued["valid"] & fronts["row"].goes
-        for name, bits in (("i", self.parameters.node_bits), ("j", self.parameters.node_bits),
-                           ("material", self.parameters.material_bits)):
+        for name, bits in (
+            ("i", self.parameters.node_bits),
+            ("j", self.parameters.node_bits),
+            ("material", self.parameters.material_bits),
+        ):
             self._issued[name] = self._issued[name][:bits]
         self._issued |= {"row": entry[width:], "sum_row": fronts["node"].entry}
 
@@ -264,8 +267,15 @@ class Lane(wiring.Component):
                 self._m.d.comb += ram.address.eq(self._host("index"))
             words.append(ram.data)
         cycles = READ_LATENCY - 1 + CHOICE  # a small memory is quick, but there are many of them
-        word = choose(self._m, self._lines, words, self.host_field, cycles=cycles, name="material_word",
-                      ahead=MEMORY - READ_LATENCY + 1)
+        word = choose(
+            self._m,
+            self._lines,
+            words,
+            self.host_field,
+            cycles=cycles,
+            name="material_word",
+            ahead=MEMORY - READ_LATENCY + 1,
+        )
         self._m.d.comb += self.host_material.eq(word)
 
     def _sums(self):

@@ -226,6 +226,7 @@ STEPS = {
     "shift_right": shift_right,
 }
 
+
 def step_count(node) -> int:
     """Steps of a node's operation."""
     if node.kind == "sum":
@@ -246,4 +247,3 @@ def field(node, x):
             low += q.width
         x = x[low : low + node.fmt.width]
     return x.as_signed() if node.fmt.signed else x.as_unsigned()
-

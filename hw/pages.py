@@ -46,22 +46,34 @@ def header(p: Parameters, about: dict) -> str:
                 constants += [(f"{name}_low", field["low"]), (f"{name}_bits", field["bits"])]
     constants.append(("region_link", link["region"]))
     for what, entries, number in (
-        ("control", about["registers"], "index"), ("link", link["registers"], "index"),
+        ("control", about["registers"], "index"),
+        ("link", link["registers"], "index"),
         ("fault", about["faults"], "bit"),
-        ("operation", link["operations"], "number"), ("kind", link["kinds"], "number"),
-        ("status", link["statuses"], "number"), ("identity", link["identity"], "item"),
+        ("operation", link["operations"], "number"),
+        ("kind", link["kinds"], "number"),
+        ("status", link["statuses"], "number"),
+        ("identity", link["identity"], "item"),
     ):
         constants += [(f"{what}_{entry['name']}", entry[number]) for entry in entries]
     constants += [(f"head_{field['name']}_low", field["low"]) for field in link["head"]]
     constants.append(("status_busy", link["busy"]))
     lines = [f"#define {_name(name)} {value}" for name, value in constants]
-    return "\n".join([
-        "/* The memory map and the link of a Rheogate circuit. Written by `python -m hw map`. */",
-        "#ifndef RHEOGATE_MAP_H", "#define RHEOGATE_MAP_H", "", *lines, "",
-        "#define RHEOGATE_ADDRESS(region, word, index, lane) \\",
-        "    ((uint32_t)(region) << RHEOGATE_REGION_LOW | (uint32_t)(lane) << RHEOGATE_LANE_LOW \\",
-        "     | (uint32_t)(word) << RHEOGATE_WORD_LOW | (uint32_t)(index))", "", "#endif", "",
-    ])
+    return "\n".join(
+        [
+            "/* The memory map and the link of a Rheogate circuit. Written by `python -m hw map`. */",
+            "#ifndef RHEOGATE_MAP_H",
+            "#define RHEOGATE_MAP_H",
+            "",
+            *lines,
+            "",
+            "#define RHEOGATE_ADDRESS(region, word, index, lane) \\",
+            "    ((uint32_t)(region) << RHEOGATE_REGION_LOW | (uint32_t)(lane) << RHEOGATE_LANE_LOW \\",
+            "     | (uint32_t)(word) << RHEOGATE_WORD_LOW | (uint32_t)(index))",
+            "",
+            "#endif",
+            "",
+        ]
+    )
 
 
 def page(p: Parameters, about: dict) -> str:
@@ -71,10 +83,17 @@ def page(p: Parameters, about: dict) -> str:
     parts = [f"# Memory map and link\n\nOf a circuit with {sizes}; key `{key(p).hex()}`."]
     parts += [_table("Address", about["address"], ("name", "low", "bits"))]
     for region in about["regions"]:
-        rows = [{"word": word["number"], "name": word["name"], "fields": _fields(word["fields"])}
-                for word in region["words"]]
-        parts.append(_table(f"Region {region['number']}, {region['name']}: {region['depth']} places, "
-                            f"{region['lanes']} lanes", rows, ("word", "name", "fields")))
+        rows = [
+            {"word": word["number"], "name": word["name"], "fields": _fields(word["fields"])}
+            for word in region["words"]
+        ]
+        parts.append(
+            _table(
+                f"Region {region['number']}, {region['name']}: {region['depth']} places, {region['lanes']} lanes",
+                rows,
+                ("word", "name", "fields"),
+            )
+        )
     for title, entries, columns in (
         ("Control registers", about["registers"], ("index", "name", "meaning")),
         (f"Registers of the link, region {link['region']}", link["registers"], ("index", "name", "meaning")),
@@ -82,8 +101,11 @@ def page(p: Parameters, about: dict) -> str:
         ("Operations", link["operations"], ("number", "name", "meaning")),
         ("Segments", link["kinds"], ("number", "name", "meaning")),
         ("A segment's head", link["head"], ("name", "low", "bits")),
-        (f"Statuses, lower four bits; {link['busy']:#x}: steps are run", link["statuses"],
-         ("number", "name", "meaning")),
+        (
+            f"Statuses, lower four bits; {link['busy']:#x}: steps are run",
+            link["statuses"],
+            ("number", "name", "meaning"),
+        ),
         ("Identity: the items behind the one that is given back", link["identity"], ("item", "name", "meaning")),
     ):
         parts.append(_table(title, entries, columns))

@@ -80,9 +80,7 @@ CONTROL_TEXT = {
     Control.STOP: "any write ends the run with its step or the next; then `STEPS_DONE` says how many were done",
 }
 
-COUNTERS = {
-    control: control.name.lower() for control in Control if Control.CYCLES <= control <= Control.END_WAITS
-}
+COUNTERS = {control: control.name.lower() for control in Control if Control.CYCLES <= control <= Control.END_WAITS}
 """What the machine counts in a run, and the names of the counters' ports."""
 
 NODE_STATE = tuple(f"{quantity}_{axis}" for quantity in "xv" for axis in AXES)

@@ -173,10 +173,12 @@ class NodeUpdater(wiring.Component):
         come = self._lines.later(self.valid, READ, reset=True) if turns > 1 else Const(1)
         for bank in range(self.banks):
             totals = [getattr(self, f"sum{bank}_{axis}") for axis in AXES]
-            pulls = [Signal.like(total, name=f"pull{bank}_{axis}", reset_less=True)
-                     for total, axis in zip(totals, AXES, strict=True)]
+            pulls = [
+                Signal.like(total, name=f"pull{bank}_{axis}", reset_less=True)
+                for total, axis in zip(totals, AXES, strict=True)
+            ]
             for number, (pull, total) in enumerate(zip(pulls, totals, strict=True)):
-                shown, behind = Mux(others[bank], 0, total), pulls[number + 1 :][:turns - 1]
+                shown, behind = Mux(others[bank], 0, total), pulls[number + 1 :][: turns - 1]
                 m.d.sync += pull.eq(Mux(come, shown, behind[0]) if behind else shown)
             inputs |= {f"pull{bank}_{axis}": pull for axis, pull in zip(self.datapath.axes, pulls, strict=False)}
 
@@ -205,8 +207,10 @@ class NodeUpdater(wiring.Component):
 
     def _written(self, name: str, ram: BlockRam, *, vector: bool = True, **writers):
         """What is written: a strobe and a word of each who writes, ``by_host`` or ``own``."""
-        places = {"by_host": self._host_place() if vector else self._host("index"),
-                  "own": self._later(self._place, self.datapath.done)}
+        places = {
+            "by_host": self._host_place() if vector else self._host("index"),
+            "own": self._later(self._place, self.datapath.done),
+        }
         ports = {"by_host": {}, "own": {}}
         for who, (strobe, word) in writers.items():
             ports[who] = {"write": strobe, "write_address": places[who], "write_data": word}

@@ -22,44 +22,71 @@ def parser() -> Parser:
 
     one = commands.add_parser("run", help="run one scene on one backend")
     one.add_argument("scene", metavar="SCENE", help="a scene file (TOML)")
-    one.add_argument("--backend", required=True, choices=BACKENDS,
-                     help="float64, the circuit's integer model, its Verilog under Verilator, or a circuit on a board")
-    one.add_argument("--port", metavar="URL",
-                     help="board: a serial port or any other URL of pyserial's, as socket://127.0.0.1:5000")
+    one.add_argument(
+        "--backend",
+        required=True,
+        choices=BACKENDS,
+        help="float64, the circuit's integer model, its Verilog under Verilator, or a circuit on a board",
+    )
+    one.add_argument(
+        "--port", metavar="URL", help="board: a serial port or any other URL of pyserial's, as socket://127.0.0.1:5000"
+    )
     one.add_argument("--baud", type=whole, metavar="N", help="board: bits a second (1000000)")
-    one.add_argument("--waves", nargs="?", const="vcd", choices=waves.FORMATS, metavar="vcd|fst",
-                     help="write the waveforms of the circuit's first 5000 busy cycles as well "
-                          "(rtl; vcd, which is larger but needs no library)")
-    one.add_argument("--out", required=True, metavar="DIR",
-                     help="folder for scene.npz, trajectory.npz and summary.json")
+    one.add_argument(
+        "--waves",
+        nargs="?",
+        const="vcd",
+        choices=waves.FORMATS,
+        metavar="vcd|fst",
+        help="write the waveforms of the circuit's first 5000 busy cycles as well "
+        "(rtl; vcd, which is larger but needs no library)",
+    )
+    one.add_argument(
+        "--out", required=True, metavar="DIR", help="folder for scene.npz, trajectory.npz and summary.json"
+    )
     one.set_defaults(run=run)
 
     many = commands.add_parser("compare", help="run scenes on all backends side by side and report the differences")
     many.add_argument("scenes", nargs="+", metavar="SCENE", help="scene files (TOML)")
-    many.add_argument("--out", default="build/report", metavar="DIR",
-                      help="folder for compare.json and index.html (build/report)")
+    many.add_argument(
+        "--out", default="build/report", metavar="DIR", help="folder for compare.json and index.html (build/report)"
+    )
     many.set_defaults(run=compare)
 
     drawn = commands.add_parser("figures", help="draw the paper's figures from runs of the circuit")
     drawn.add_argument("names", nargs="*", metavar="NAME", help="figures, as figure-6 or gravity (all)")
-    drawn.add_argument("--out", default="build/figures", metavar="DIR",
-                       help="folder for PNG, SVG and GIF of each, and figures.json (build/figures)")
-    drawn.add_argument("--backend", default="fixed", choices=("fixed", "rtl"),
-                       help="the circuit's integer model, or its Verilog under Verilator: the same bits (fixed)")
+    drawn.add_argument(
+        "--out",
+        default="build/figures",
+        metavar="DIR",
+        help="folder for PNG, SVG and GIF of each, and figures.json (build/figures)",
+    )
+    drawn.add_argument(
+        "--backend",
+        default="fixed",
+        choices=("fixed", "rtl"),
+        help="the circuit's integer model, or its Verilog under Verilator: the same bits (fixed)",
+    )
     drawn.set_defaults(run=figures)
 
     kept = commands.add_parser("export", help="write a run in a form that other programs read")
     kept.add_argument("run_folder", metavar="RUN", help="folder that `run` left")
-    kept.add_argument("--vtu", action="store_true", required=True,
-                      help="for ParaView: run.pvd and a file for each frame")
+    kept.add_argument(
+        "--vtu", action="store_true", required=True, help="for ParaView: run.pvd and a file for each frame"
+    )
     kept.add_argument("--out", metavar="DIR", help="folder to write to (RUN/vtu)")
     kept.set_defaults(run=export)
 
     page = commands.add_parser("report", help="the page of runs that there are already")
-    page.add_argument("runs", nargs="+", metavar="RUN",
-                      help="folders of `run`: those of the same scene go together; float64, if it isn't there, is run")
-    page.add_argument("--out", default="build/report", metavar="DIR",
-                      help="folder for compare.json and index.html (build/report)")
+    page.add_argument(
+        "runs",
+        nargs="+",
+        metavar="RUN",
+        help="folders of `run`: those of the same scene go together; float64, if it isn't there, is run",
+    )
+    page.add_argument(
+        "--out", default="build/report", metavar="DIR", help="folder for compare.json and index.html (build/report)"
+    )
     page.set_defaults(run=report)
 
     board = commands.add_parser("serve", help="the simulated circuit behind its serial link, on a loopback socket")
@@ -70,18 +97,26 @@ def parser() -> Parser:
     speed.add_argument("--meshes", nargs="+", metavar="MESH", help="nodes along each axis, as 9x9 or 5x5x5")
     speed.add_argument("--steps", type=whole, default=10_000, metavar="N", help="steps of the software to time (10000)")
     speed.add_argument("--clock", type=megahertz, metavar="MHZ", help="the circuit's clock (timed: ULX3S-85F)")
-    speed.add_argument("--out", default="build/bench.json", metavar="FILE",
-                       help="file for the figures (build/bench.json)")
+    speed.add_argument(
+        "--out", default="build/bench.json", metavar="FILE", help="file for the figures (build/bench.json)"
+    )
     speed.set_defaults(run=bench)
 
     for command, only in ((one, "rtl; "), (many, ""), (board, "")):
-        command.add_argument("--lanes", type=whole, metavar="P",
-                             help=f"edge processors of the circuit ({only}{LANES})")
-        command.add_argument("--updates", type=whole, metavar="M",
-                             help=f"nodes that the circuit updates in a cycle, 1 or 2 ({only}{UPDATES})")
-    for command, what in ((one, "summary.json instead of a line"), (many, "compare.json instead of a table"),
-                          (page, "compare.json instead of a table"), (drawn, "figures.json instead of a table"),
-                          (speed, "FILE instead of tables")):
+        command.add_argument("--lanes", type=whole, metavar="P", help=f"edge processors of the circuit ({only}{LANES})")
+        command.add_argument(
+            "--updates",
+            type=whole,
+            metavar="M",
+            help=f"nodes that the circuit updates in a cycle, 1 or 2 ({only}{UPDATES})",
+        )
+    for command, what in (
+        (one, "summary.json instead of a line"),
+        (many, "compare.json instead of a table"),
+        (page, "compare.json instead of a table"),
+        (drawn, "figures.json instead of a table"),
+        (speed, "FILE instead of tables"),
+    ):
         command.add_argument("--json", action="store_true", help=f"print the contents of {what}")
     for command in (one, many, page, drawn, kept):
         command.add_argument("--force", action="store_true", help="write into DIR even if other files are there")
@@ -135,8 +170,10 @@ def run(args) -> int:
         result = run(scene, args.backend, **wanted, waves=args.waves and out / f"waves.{args.waves}", progress=shown)
     store.save(scene, result, out)
     if not _printed(args, out / store.SUMMARY):
-        print(f"{scene.name}: {scene.steps} steps on {args.backend} in {result.seconds:.1f} s, "
-              f"{len(scene.frames)} frames in {out / store.TRAJECTORY}")
+        print(
+            f"{scene.name}: {scene.steps} steps on {args.backend} in {result.seconds:.1f} s, "
+            f"{len(scene.frames)} frames in {out / store.TRAJECTORY}"
+        )
     if result.faults:
         print(f"error: saturated: {', '.join(result.faults)}", file=sys.stderr)
     return 1 if result.faults else 0
@@ -211,8 +248,9 @@ def figures(args) -> int:
     with terminal.progress(loaded, ("float", args.backend)) as shown:
         pairs = make.compute(loaded, args.backend, shown)
     with terminal.bars([(name, make.PICTURES) for name in names]) as shown:
-        drawn = {name: make.draw(name, pairs, out, shown and partial(shown, number))
-                 for number, name in enumerate(names)}
+        drawn = {
+            name: make.draw(name, pairs, out, shown and partial(shown, number)) for number, name in enumerate(names)
+        }
     make.save(entries | drawn, out)
     if not _printed(args, out / make.DATA):
         table.print_readings(drawn)
@@ -258,6 +296,7 @@ def bench(args) -> int:
 
     out = bench.claim(Path(args.out))
     with table.progress() as shown:
+
         def software(scene):
             return timing.software(scene, args.steps, lambda name: shown(f"{scene.name}: {timing.SOFTWARE[name]}"))
 

@@ -82,10 +82,16 @@ def coefficients(
     k, k_shift = coefficient(material.k * units.size / full, formats)
     c, c_shift = coefficient(material.c1 * units.velocity / full, formats)
     record = {
-        "k": k, "k_shift": k_shift, "c": c, "c_shift": c_shift,
-        "a_min": ratio(material.a_min, formats), "a_max": ratio(material.a_max, formats),
-        "g1": round(g1 / formats.threshold.lsb), "g2": round(g2 / formats.threshold.lsb),
-        "force_shift": round(log2(units.force / full)) - 1, "creep_shift": creep_shift,
+        "k": k,
+        "k_shift": k_shift,
+        "c": c,
+        "c_shift": c_shift,
+        "a_min": ratio(material.a_min, formats),
+        "a_max": ratio(material.a_max, formats),
+        "g1": round(g1 / formats.threshold.lsb),
+        "g2": round(g2 / formats.threshold.lsb),
+        "force_shift": round(log2(units.force / full)) - 1,
+        "creep_shift": creep_shift,
         "first_octave": words.first_octave if words else 0,
         "fineness": words.fineness if words else 0,
         "table": table if words else 0,
@@ -99,4 +105,3 @@ def coefficients(
 
 def ratio(a: float, formats: Formats) -> int:
     return round(a * 2**formats.ratio.frac_bits)
-

@@ -87,14 +87,22 @@ class Comparison:
         }
 
 
-def compare(scene: Scene, *, lanes: int = LANES, updates: int = UPDATES,
-            progress: Callable[[str, int], object] | None = None) -> Comparison:
+def compare(
+    scene: Scene, *, lanes: int = LANES, updates: int = UPDATES, progress: Callable[[str, int], object] | None = None
+) -> Comparison:
     """Run the scene on float64, integers and simulated circuit; ``progress(backend, steps done)`` as in `run`."""
     return completed(scene, {}, COMPARED, lanes=lanes, updates=updates, progress=progress)
 
 
-def completed(scene: Scene, runs: dict[str, Result], backends: tuple[str, ...], *, lanes: int = LANES,
-              updates: int = UPDATES, progress: Callable[[str, int], object] | None = None) -> Comparison:
+def completed(
+    scene: Scene,
+    runs: dict[str, Result],
+    backends: tuple[str, ...],
+    *,
+    lanes: int = LANES,
+    updates: int = UPDATES,
+    progress: Callable[[str, int], object] | None = None,
+) -> Comparison:
     """Run the scene on those of ``backends`` that there is no run of, and look at the ranges of the integers.
 
     ``progress("ranges", steps done)`` comes after all runs.

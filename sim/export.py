@@ -17,8 +17,7 @@ from sim.energy import edge_forces
 COLLECTION = "run.pvd"
 
 
-def vtu(scene: Scene, trajectory: Trajectory, folder: Path,
-        shown: Callable[[Iterable], Iterable] = iter) -> list[Path]:
+def vtu(scene: Scene, trajectory: Trajectory, folder: Path, shown: Callable[[Iterable], Iterable] = iter) -> list[Path]:
     """Write ``frame-0000.vtu`` and so on, then ``run.pvd``, which names them with their times (s); gives all of them.
 
     Points are the nodes in m, with the scene's displacement (m), velocity (m/s) and reaction (N). Cells are the edges
@@ -36,9 +35,12 @@ def vtu(scene: Scene, trajectory: Trajectory, folder: Path,
         force = forces[n]
         paths.append(folder / f"frame-{n:0{digits}}.vtu")
         meshfile.write(
-            paths[-1], x, [mesh.edges, mesh.cells],
+            paths[-1],
+            x,
+            [mesh.edges, mesh.cells],
             {"displacement": in_space(x - trajectory.x[0]), "velocity": in_space(v), "reaction": in_space(reaction)},
-            {"ratio": [a, a[of_cells].mean(axis=1)], "force": [force, force[of_cells].mean(axis=1)]})
+            {"ratio": [a, a[of_cells].mean(axis=1)], "force": [force, force[of_cells].mean(axis=1)]},
+        )
     _write_collection(collection, trajectory.t, paths)
     return [*paths, collection]
 

@@ -18,8 +18,10 @@ def claim(path, force: bool = False) -> Path:
     try:
         path.mkdir(parents=True, exist_ok=True)
         if any(path.iterdir()) and not (path / MARK).exists() and not force:
-            raise InputError(f"--out must be a new folder or one of earlier results, not {path}, which holds other "
-                             "files: choose another, or add --force to write into it all the same")
+            raise InputError(
+                f"--out must be a new folder or one of earlier results, not {path}, which holds other "
+                "files: choose another, or add --force to write into it all the same"
+            )
         (path / MARK).write_text("Results of `python -m sim`, which may write here again.\n")
     except FileExistsError:
         raise InputError(f"--out must be a folder, not the file {path}") from None

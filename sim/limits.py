@@ -43,8 +43,10 @@ def _check_speed(scene: Scene) -> None:
     for n, phase in enumerate(scene.phases):
         fastest = np.abs(phase.velocity[phase.driven]).max(initial=0)
         if fastest >= limit:
-            raise InputError(f"phases[{n}].driven must have velocities below {limit:.3g} m/s, not {fastest:.3g}: "
-                             "the circuit moves a node by less than a quarter of the object's size in a step")
+            raise InputError(
+                f"phases[{n}].driven must have velocities below {limit:.3g} m/s, not {fastest:.3g}: "
+                "the circuit moves a node by less than a quarter of the object's size in a step"
+            )
 
 
 def _check_masses(loaded: Loaded) -> None:

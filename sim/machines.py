@@ -89,10 +89,14 @@ class Witness:
         model.faults.clear()
         machine.step(1)
         model.step(1)
-        differing = [name for name in ("x", "v", "ratio", "force")
-                     if not np.array_equal(getattr(model, name), getattr(machine, name))]
+        differing = [
+            name
+            for name in ("x", "v", "ratio", "force")
+            if not np.array_equal(getattr(model, name), getattr(machine, name))
+        ]
         if machine.faults - faults != model.faults:
             differing.append("faults")
         if differing:
-            raise InternalError(f"the compiled integer model and the NumPy model differ in {', '.join(differing)} "
-                                f"after step {number}")
+            raise InternalError(
+                f"the compiled integer model and the NumPy model differ in {', '.join(differing)} after step {number}"
+            )

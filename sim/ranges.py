@@ -18,22 +18,58 @@ SAMPLES = 100
 """Steps of a run that are looked at, unless it has fewer frames or more phases."""
 
 QUANTITIES = {
-    "d": "edge vector", "square": "squared length", "inverse": "1 / length", "u": "direction of the edge",
-    "w": "relative velocity", "rate": "rate of the length", "share": "ratio, as an operand",
-    "relaxed": "length of the Voigt part", "stretch": "stretch of the spring", "spring": "spring's trial force",
-    "dashpot": "damper's trial force", "g": "size of the trial force", "rho": "rho",
-    "sigma": "sigma", "trials": "trial force along the axes", "pull": "force on a node", "s": "sigma g",
-    "creep": "creep rate", "extension": "extension rate", "net": "difference of the two rates",
-    "weighted": "1 / length, weighted", "slope": "slope of the ratio", "total_next": "sum of the ratio's slopes",
+    "d": "edge vector",
+    "square": "squared length",
+    "inverse": "1 / length",
+    "u": "direction of the edge",
+    "w": "relative velocity",
+    "rate": "rate of the length",
+    "share": "ratio, as an operand",
+    "relaxed": "length of the Voigt part",
+    "stretch": "stretch of the spring",
+    "spring": "spring's trial force",
+    "dashpot": "damper's trial force",
+    "g": "size of the trial force",
+    "rho": "rho",
+    "sigma": "sigma",
+    "trials": "trial force along the axes",
+    "pull": "force on a node",
+    "s": "sigma g",
+    "creep": "creep rate",
+    "extension": "extension rate",
+    "net": "difference of the two rates",
+    "weighted": "1 / length, weighted",
+    "slope": "slope of the ratio",
+    "total_next": "sum of the ratio's slopes",
     "ratio_next": "ratio",
-    "force": "sum of forces on a node", "mantissa": "sum of forces, as an operand", "factor": "1 / mass, weighted",
-    "acceleration": "velocity gained in a step", "v_total": "sum of the velocity's slopes", "v": "velocity",
-    "displacement": "way in a step", "x_total": "sum of the ways", "x": "position",
+    "force": "sum of forces on a node",
+    "mantissa": "sum of forces, as an operand",
+    "factor": "1 / mass, weighted",
+    "acceleration": "velocity gained in a step",
+    "v_total": "sum of the velocity's slopes",
+    "v": "velocity",
+    "displacement": "way in a step",
+    "x_total": "sum of the ways",
+    "x": "position",
 }
 """The variables of `golden.edge` and `golden.node` that hold bits for long or multiply, in their order, in words."""
 
-NORMALISED = {"d", "square", "inverse", "w", "rate", "stretch", "g", "rho", "sigma", "s", "net", "weighted", "mantissa",
-              "factor"}
+NORMALISED = {
+    "d",
+    "square",
+    "inverse",
+    "w",
+    "rate",
+    "stretch",
+    "g",
+    "rho",
+    "sigma",
+    "s",
+    "net",
+    "weighted",
+    "mantissa",
+    "factor",
+}
 """Those that travel with an exponent: shifted so that they fill their bits, which leaves them no headroom to have."""
 
 
@@ -87,8 +123,12 @@ def in_si(unit: str, units: Units) -> tuple[float, str]:
     """A format's unit in SI. The trial forces of several materials have no common one: then it is the full scale."""
     trial = (units.trial[0], "N") if len(set(units.trial)) == 1 else (1.0, "full scale")
     return {
-        "size": (units.size, "m"), "size/step": (units.size, "m"), "velocity full scale": (units.velocity, "m/s"),
-        "force full scale": (units.force, "N"), "trial full scale": trial, "1": (1.0, ""),
+        "size": (units.size, "m"),
+        "size/step": (units.size, "m"),
+        "velocity full scale": (units.velocity, "m/s"),
+        "force full scale": (units.force, "N"),
+        "trial full scale": trial,
+        "1": (1.0, ""),
     }[unit]
 
 

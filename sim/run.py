@@ -114,16 +114,24 @@ def run(
         return Result("float", trajectory, perf_counter() - began)
 
     loaded = limits.load(scene, edge_order)
-    with (machines.board(loaded.image, link) if link
-          else machines.circuit(loaded.image, parameters, waves) if circuit
-          else machines.integer_model(loaded.image, engine)) as machine:
+    with (
+        machines.board(loaded.image, link)
+        if link
+        else machines.circuit(loaded.image, parameters, waves)
+        if circuit
+        else machines.integer_model(loaded.image, engine)
+    ) as machine:
         for held in limits.later(loaded) if circuit else ():
             machines.check_room(held.image, parameters)
         witness = machines.Witness(loaded.image) if not circuit and engine != "numpy" else None
         frames = _frames(loaded, machine, witness, progress)
         raw = _raw(loaded, frames)
         return Result(
-            backend, _trajectory(loaded, frames), perf_counter() - began, raw, loaded.units,
+            backend,
+            _trajectory(loaded, frames),
+            perf_counter() - began,
+            raw,
+            loaded.units,
             faults={name: count for name, count in sorted(machine.faults.items()) if count},
             cycles=int(machine.cycles) if circuit else None,
             lanes=parameters.lanes if circuit else None,
@@ -137,8 +145,11 @@ def _check(scene, backend, edge_order, engine, waves, link):
     if engine not in machines.ENGINES:
         raise InputError(f"engine must be one of {', '.join(machines.ENGINES)}, not {engine!r}")
     if (link is not None) != (backend == "board"):
-        raise InputError(f"link must go with the backend board, not {backend}" if link
-                         else "link must be given for the backend board")
+        raise InputError(
+            f"link must go with the backend board, not {backend}"
+            if link
+            else "link must be given for the backend board"
+        )
     if waves is not None and backend != "rtl":
         raise InputError(f"waves must go with the backend rtl, not {backend}: only the circuit has signals")
     if waves is not None:
@@ -203,9 +214,16 @@ def _raw(loaded: Loaded, frames) -> Raw:
 
 def _trajectory(loaded: Loaded, frames) -> Trajectory:
     scene = loaded.scene
-    x, v, a, force = map(np.array, zip(*(
-        (loaded.positions(x), loaded.velocities(v), loaded.ratios(ratio), loaded.forces(force))
-        for x, v, ratio, force in frames), strict=True))
+    x, v, a, force = map(
+        np.array,
+        zip(
+            *(
+                (loaded.positions(x), loaded.velocities(v), loaded.ratios(ratio), loaded.forces(force))
+                for x, v, ratio, force in frames
+            ),
+            strict=True,
+        ),
+    )
     ends = np.cumsum([phase.steps for phase in scene.phases])
     current = np.searchsorted(ends, scene.frames)  # the frame at the end of a phase belongs to that phase
     held = np.array([phase.held for phase in scene.phases])[current]

@@ -40,8 +40,10 @@ def load(folder) -> tuple[Scene, dict, Trajectory]:
     kept = _read(folder / TRAJECTORY, trajectory.load)
     same = np.array_equal(kept.edges, scene.mesh.edges) and np.array_equal(kept.t, scene.frames * scene.dt)
     if not same or said.get("scene") != scene.name:
-        raise InputError(f"RUN must be a folder with the files of one run, not {folder}: "
-                         f"{SCENE}, {TRAJECTORY} and {SUMMARY} differ in what they are of")
+        raise InputError(
+            f"RUN must be a folder with the files of one run, not {folder}: "
+            f"{SCENE}, {TRAJECTORY} and {SUMMARY} differ in what they are of"
+        )
     return scene, said, kept
 
 
@@ -49,8 +51,9 @@ def _read(path: Path, read):
     try:
         return read(path)
     except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path} must be as `python -m sim run` wrote it: it cannot be read "
-                         f"({type(error).__name__})") from error
+        raise InputError(
+            f"{path} must be as `python -m sim run` wrote it: it cannot be read ({type(error).__name__})"
+        ) from error
 
 
 def summary(scene: Scene, result: Result) -> dict:
@@ -72,8 +75,12 @@ def summary(scene: Scene, result: Result) -> dict:
         "final_displacement": float(np.linalg.norm(x[-1] - x[0], axis=1).max()),
         "saturations": result.saturations,
         "faults": result.faults,
-        "units": units and {
-            "length": units.size, "time": units.dt, "velocity": units.velocity, "force": units.force,
+        "units": units
+        and {
+            "length": units.size,
+            "time": units.dt,
+            "velocity": units.velocity,
+            "force": units.force,
         },
         "lanes": result.lanes,
         "updates": result.updates,

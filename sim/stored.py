@@ -51,9 +51,11 @@ def integers(loaded: Loaded, kept: Trajectory) -> Raw | None:
     x = _raw((kept.x - units.centre) / units.size, fmt.position)
     v, ratio = _raw(kept.v / units.velocity, fmt.velocity), _raw(kept.a, fmt.ratio)
     dim = kept.x.shape[2]
-    exact = (np.array_equal(x * fmt.position.lsb * units.size + units.centre, kept.x)
-             and np.array_equal(v * fmt.velocity.lsb * units.velocity, kept.v)
-             and np.array_equal(ratio * fmt.ratio.lsb, kept.a))
+    exact = (
+        np.array_equal(x * fmt.position.lsb * units.size + units.centre, kept.x)
+        and np.array_equal(v * fmt.velocity.lsb * units.velocity, kept.v)
+        and np.array_equal(ratio * fmt.ratio.lsb, kept.a)
+    )
     padding = ((0, 0), (0, 0), (0, 3 - dim))
     return Raw(np.pad(x, padding), np.pad(v, padding), ratio) if exact else None
 
@@ -73,17 +75,23 @@ def grouped(folders) -> list[tuple[Scene, dict[str, Path]]]:
         scene, result = load(folder)
         _, runs = groups.setdefault(scene.name, (scene, {}))
         if result.backend in runs:
-            raise InputError(f"RUN must be one of each backend for a scene, not two on {result.backend} of "
-                             f"{scene.name!r}: {runs[result.backend]} and {folder}")
+            raise InputError(
+                f"RUN must be one of each backend for a scene, not two on {result.backend} of "
+                f"{scene.name!r}: {runs[result.backend]} and {folder}"
+            )
         for other in list(runs.values())[:1]:
             if not _same(other / store.SCENE, folder / store.SCENE):
-                raise InputError(f"RUN must be of one scene where the name is one, not of two that are called "
-                                 f"{scene.name!r}: {other} and {folder}")
+                raise InputError(
+                    f"RUN must be of one scene where the name is one, not of two that are called "
+                    f"{scene.name!r}: {other} and {folder}"
+                )
         runs[result.backend] = folder
     for name, (_, runs) in groups.items():
         if not runs.keys() & set(INTEGERS):
-            raise InputError(f"RUN must be one on {', '.join(INTEGERS[:-1])} or {INTEGERS[-1]} for the scene {name!r} "
-                             f"as well, not only {', '.join(map(str, runs.values()))}")
+            raise InputError(
+                f"RUN must be one on {', '.join(INTEGERS[:-1])} or {INTEGERS[-1]} for the scene {name!r} "
+                f"as well, not only {', '.join(map(str, runs.values()))}"
+            )
     return list(groups.values())
 
 

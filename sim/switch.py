@@ -36,8 +36,9 @@ def switch(loaded: Loaded, machine, materials: tuple[Material, ...]) -> Loaded:
         units of this run can't hold.
     """
     after, fmt = prepared(loaded, tuple(materials)), loaded.image.formats
-    image = replace(after.image, x=machine.x, v=machine.v, length=loaded.image.length.copy(),
-                    ratio=machine.ratio.copy())
+    image = replace(
+        after.image, x=machine.x, v=machine.v, length=loaded.image.length.copy(), ratio=machine.ratio.copy()
+    )
     for number, (old, new) in enumerate(zip(loaded.scene.materials, materials, strict=True)):
         if old == new:
             continue
@@ -54,14 +55,17 @@ def prepared(loaded: Loaded, materials: tuple[Material, ...]) -> Loaded:
     """The object with other materials, as it would be at its start. Raises `InputError` as `switch`."""
     scene, fmt = replace(loaded.scene, materials=materials), loaded.image.formats
     if len(materials) != len(loaded.scene.materials):
-        raise InputError(f"materials must be {len(loaded.scene.materials)}, as many as there were, not "
-                         f"{len(materials)}")
+        raise InputError(
+            f"materials must be {len(loaded.scene.materials)}, as many as there were, not {len(materials)}"
+        )
     stability.check(scene)
     units = replace(loaded.units, trial=trials_of(scene, materials, loaded.units.velocity))
     for number, m in enumerate(materials):
         if largest_share(m) * units.trial[number] > units.force:
-            raise InputError(f"materials.{m.name} must have forces below {units.force:.3g} N, the full scale of this "
-                             f"run, not up to {largest_share(m) * units.trial[number]:.3g} N: begin a run with it")
+            raise InputError(
+                f"materials.{m.name} must have forces below {units.force:.3g} N, the full scale of this "
+                f"run, not up to {largest_share(m) * units.trial[number]:.3g} N: begin a run with it"
+            )
     fields, damper = consisting(materials, units, fmt)
     return replace(loaded, scene=scene, units=units, image=replace(loaded.image, materials=fields, damper=damper))
 
@@ -69,8 +73,10 @@ def prepared(loaded: Loaded, materials: tuple[Material, ...]) -> Loaded:
 def _state(loaded: Loaded, machine, edges):
     """l (m), dl/dt (m/s), a and L (m) of some edges, in the circuit's order."""
     fmt, units, ends = loaded.image.formats, loaded.units, loaded.image.edges[edges].T
-    d, w = (np.ldexp((raw[ends[1]] - raw[ends[0]]).astype(float), -q.frac_bits) * unit
-            for raw, q, unit in ((machine.x, fmt.position, units.size), (machine.v, fmt.velocity, units.velocity)))
+    d, w = (
+        np.ldexp((raw[ends[1]] - raw[ends[0]]).astype(float), -q.frac_bits) * unit
+        for raw, q, unit in ((machine.x, fmt.position, units.size), (machine.v, fmt.velocity, units.velocity))
+    )
     length = np.linalg.norm(d, axis=1)
     rate = (d * w).sum(axis=1) / length
     ratio = np.ldexp(machine.ratio[edges].astype(float), -fmt.ratio.frac_bits)

@@ -58,8 +58,11 @@ def choose(scene: Scene, formats: Formats) -> Units:
     shift = max(lowest, int(-np.ceil(log2(fastest * scene.dt / scene.size)))) if fastest else lowest
     velocity = 2.0**-shift * scene.size / scene.dt
     trials = [trials_of(scene, materials, velocity) for materials in scene.material_sets]
-    shares = [largest_share(m) * g for materials, trial in zip(scene.material_sets, trials, strict=True)
-              for m, g in zip(materials, trial, strict=True)]
+    shares = [
+        largest_share(m) * g
+        for materials, trial in zip(scene.material_sets, trials, strict=True)
+        for m, g in zip(materials, trial, strict=True)
+    ]
     loads = [np.abs(p.load).max() + scene.mass.max() * np.abs(scene.gravity).max() for p in scene.phases]
     return Units(scene.size, centre, scene.dt, shift, full_scale(max(*shares, *loads)), trials[0])
 

@@ -19,14 +19,20 @@ def check(path: Path) -> None:
         raise InputError(f"waves must be a file ending in {' or '.join(f'.{f}' for f in FORMATS)}, not {path.name}")
     lacking = [package for header, package in HEADERS[form].items() if not found(header)]
     if lacking:
-        raise InputError(f"waves as {form} need a library that is missing: install it (Debian: apt install "
-                         f"{' '.join(lacking)}), or take vcd, which needs none")
+        raise InputError(
+            f"waves as {form} need a library that is missing: install it (Debian: apt install "
+            f"{' '.join(lacking)}), or take vcd, which needs none"
+        )
 
 
 def found(header: str) -> bool:
     """Whether the C++ compiler finds a header. A missing compiler is reported by who compiles."""
     try:
-        return not subprocess.run(["c++", "-E", "-x", "c++", "-include", header, "/dev/null"],
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode
+        return not subprocess.run(
+            ["c++", "-E", "-x", "c++", "-include", header, "/dev/null"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            check=False,
+        ).returncode
     except FileNotFoundError:
         return True

@@ -1,4 +1,5 @@
 """Debian's chromium, without a window: what people open the report's page with."""
+
 import os
 import shutil
 from contextlib import contextmanager
@@ -13,7 +14,7 @@ def chromium():
     """A browser; the test is skipped where there is none, but in continuous integration there must be one."""
     program = shutil.which("chromium")
     if program is None:
-        (what, package), = environment.BROWSER.values()
+        ((what, package),) = environment.BROWSER.values()
         message = f"{what} is missing, with which the report is tested: {environment.install_it(package)}"
         pytest.fail(message) if os.environ.get("CI") else pytest.skip(message)
     from playwright.sync_api import sync_playwright

@@ -29,9 +29,22 @@ async def what_is_written_is_read_and_steps_are_the_models(dut, name):
 async def a_reset_circuit_says_what_it_is(dut):
     host = await start(dut)
     expected = {
-        Control.MAGIC: MAGIC, Control.VERSION: VERSION, Control.LANES: 2, Control.UPDATES: 1, Control.NODES: 16,
-        Control.ROWS: 32, Control.MATERIALS: 2, Control.TABLES: 1, Control.BUSY: 0, Control.REFUSED: 0, Control.RUN: 0,
-        Control.STOP: 0, Control.ROW_COUNT: 0, Control.NODE_COUNT: 0, Control.CYCLES: 0, Control.STEPS_DONE: 0,
+        Control.MAGIC: MAGIC,
+        Control.VERSION: VERSION,
+        Control.LANES: 2,
+        Control.UPDATES: 1,
+        Control.NODES: 16,
+        Control.ROWS: 32,
+        Control.MATERIALS: 2,
+        Control.TABLES: 1,
+        Control.BUSY: 0,
+        Control.REFUSED: 0,
+        Control.RUN: 0,
+        Control.STOP: 0,
+        Control.ROW_COUNT: 0,
+        Control.NODE_COUNT: 0,
+        Control.CYCLES: 0,
+        Control.STEPS_DONE: 0,
         Control.FAULTS: 0,
     }
     assert await host.read([control(register) for register in expected]) == list(expected.values())
@@ -109,10 +122,16 @@ async def what_is_not_on_the_map_is_refused_and_nothing_changes(dut):
 
     p = PARAMETERS
     impossible = [
-        (Control.RUN, 0), (Control.RUN, 1 << 32),
-        (Control.ROW_COUNT, 0), (Control.ROW_COUNT, p.rows + 1), (Control.ROW_COUNT, 1 << 32),
-        (Control.NODE_COUNT, 0), (Control.NODE_COUNT, p.nodes + 1), (Control.NODE_COUNT, 1 << 32),
-        (Control.VELOCITY_SHIFT, 128), (Control.VELOCITY_SHIFT, 1 << 32),
+        (Control.RUN, 0),
+        (Control.RUN, 1 << 32),
+        (Control.ROW_COUNT, 0),
+        (Control.ROW_COUNT, p.rows + 1),
+        (Control.ROW_COUNT, 1 << 32),
+        (Control.NODE_COUNT, 0),
+        (Control.NODE_COUNT, p.nodes + 1),
+        (Control.NODE_COUNT, 1 << 32),
+        (Control.VELOCITY_SHIFT, 128),
+        (Control.VELOCITY_SHIFT, 1 << 32),
     ]
     await host.refused([(1, control(register), value) for register, value in impossible])
 

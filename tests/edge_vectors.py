@@ -33,8 +33,10 @@ def batch(rng, graph, fmt: Formats, damper, velocity_shift: int, n: int) -> dict
     tables = len(damper["rho_value"])
     formats = {name: node.fmt for name, node in graph.inputs.items() if name != "velocity_shift"}
     kind = rng.integers(16, size=n)
-    share = {number: np.flatnonzero(choice) for number, choice in enumerate((kind < 8, (8 <= kind) & (kind < 12),
-                                                                             (12 <= kind) & (kind < 15), kind == 15))}
+    share = {
+        number: np.flatnonzero(choice)
+        for number, choice in enumerate((kind < 8, (8 <= kind) & (kind < 12), (12 <= kind) & (kind < 15), kind == 15))
+    }
     makers = sensible, anything, corners, limits
     inputs = {name: np.empty(n, np.int64) for name in formats}
     for number, rows in share.items():
@@ -86,7 +88,8 @@ def shifts(rng, formats, n, part, low=-4, high=24):
     """That part of the exponents is between ``low`` and ``high``, the others are anything."""
     return {
         name: np.where(rng.random(n) < part, rng.integers(low, high, n), rng.integers(q.raw_min, q.raw_max, n))
-        for name, q in formats.items() if name.endswith("shift")
+        for name, q in formats.items()
+        if name.endswith("shift")
     }
 
 

@@ -1,4 +1,5 @@
 """The runs that the figures are drawn from, each computed once for all tests of a process."""
+
 from functools import cache
 
 from sim.figures import runs

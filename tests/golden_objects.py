@@ -31,11 +31,18 @@ def scene(mesh, materials, dt, phases, mass=1.0, gravity=None, edge_material=0, 
     ends = np.cumsum([p.steps for p in phases])
     frames = np.union1d([0, *ends], np.arange(0, ends[-1] + 1, every or ends[-1]))
     return Scene(
-        name="object", description="", path=None, mesh=mesh, materials=materials,
+        name="object",
+        description="",
+        path=None,
+        mesh=mesh,
+        materials=materials,
         edge_material=np.broadcast_to(edge_material, len(mesh.edges)),
         mass=np.broadcast_to(np.asarray(mass, dtype=float), len(mesh.points)),
         gravity=np.zeros(mesh.dim) if gravity is None else np.asarray(gravity, dtype=float),
-        dt=dt, phases=tuple(phases), frames=frames)
+        dt=dt,
+        phases=tuple(phases),
+        frames=frames,
+    )
 
 
 def bottom(mesh) -> np.ndarray:

@@ -16,7 +16,8 @@ MATERIALS = {
     "plastic": PRESETS["plastic"]("plastic", 2.0),
     "rheological": PRESETS["rheological"]("rheological", 200.0, 0.5, 20.0),
     "rheological-force": PRESETS["rheological-force"](
-        "rheological-force", 200.0, 0.5, **FORCE, c_max=200.0, c_min=2.0, a_min=0.1, a_max=0.9),
+        "rheological-force", 200.0, 0.5, **FORCE, c_max=200.0, c_min=2.0, a_min=0.1, a_max=0.9
+    ),
     "plastic-force": PRESETS["plastic-force"]("plastic-force", 5.0, **FORCE, c_max=1.0, c_min=0.05),
 }
 DT = 2e-4  # s
@@ -92,5 +93,3 @@ def random_image(rng, fmt=None, nodes=12, edges=60, materials=8, tables=3, lawfu
         image.inverse = random_record(rng, word, (entries,))
         image.inverse["value"] = np.where(large, word["value"].raw_max, image.inverse["value"])
     return image
-
-

@@ -40,7 +40,7 @@ c_max = 100.0
 c_min = 1.0
 region = { box = { min = [0.1, 0], max = [0.2, 0.1] } }
 """
-GEL = SCENE[SCENE.index("[materials.gel]"):SCENE.index("[[phases]]")]
+GEL = SCENE[SCENE.index("[materials.gel]") : SCENE.index("[[phases]]")]
 MESH = 'mesh = { kind = "rectangle", nodes = [3, 3], size = [0.2, 0.1] }'
 BOTTOM = '{ plane = { axis = "y", at = 0.0 } }'
 TOP = "{ box = { min = [0, 0.1], max = [0.2, 0.1] }, velocity = [0, -0.5] }"

@@ -1,4 +1,5 @@
 """Small scenes for the tests of co-simulation, and a stand-in for the simulated circuit."""
+
 from contextlib import contextmanager
 
 import golden_objects as objects
@@ -12,8 +13,9 @@ MATERIALS = {
     "viscoelastic": materials.viscoelastic("gel", 200.0, 0.5),
     "plastic": materials.plastic("clay", 2.0),
     "rheological": materials.rheological("dough", 200.0, 0.5, 20.0),
-    "rheological-force": materials.rheological_force("dough", 200.0, 0.5, f1=0.05, f2=0.5, c_max=200.0, c_min=2.0,
-                                                     a_min=0.1, a_max=0.9, a0=0.5),
+    "rheological-force": materials.rheological_force(
+        "dough", 200.0, 0.5, f1=0.05, f2=0.5, c_max=200.0, c_min=2.0, a_min=0.1, a_max=0.9, a0=0.5
+    ),
     "plastic-force": materials.plastic_force("clay", 5.0, f1=0.05, f2=0.5, c_max=1.0, c_min=0.05),
 }
 MESHES = {2: mesh.rectangle((4, 3), (0.1, 0.08)), 3: mesh.box((3, 3, 3), (0.1, 0.08, 0.06))}
@@ -24,8 +26,13 @@ def block(material="rheological", dim=2, steps=(40, 20, 30), every=6, **kwargs):
     m = MESHES[dim]
     depth = np.ptp(m.points[:, -1]) / 10
     phases = objects.press_hold_release(m, depth, (steps[0], DT), *steps[1:])
-    return objects.scene(m, MATERIALS.get(material, material), DT, phases,
-                         **{"mass": 0.01 + 0.001 * (np.arange(len(m.points)) % 3), "every": every} | kwargs)
+    return objects.scene(
+        m,
+        MATERIALS.get(material, material),
+        DT,
+        phases,
+        **{"mass": 0.01 + 0.001 * (np.arange(len(m.points)) % 3), "every": every} | kwargs,
+    )
 
 
 class Standin(Machine):

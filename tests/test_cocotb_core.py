@@ -27,12 +27,21 @@ def test_the_emitted_circuit(simulator, tmp_path, monkeypatch):
     monkeypatch.setenv("MAKEFLAGS", f"{os.environ['MAKEFLAGS']} {UNOPTIMISED}")
     runner = get_runner(simulator)
     runner.build(
-        sources=[source], hdl_toplevel=TOP, build_dir=tmp_path, build_args=ARGUMENTS[simulator], always=True,
-        timescale=("1ns", "1ps"), log_file=tmp_path / "build.log",
+        sources=[source],
+        hdl_toplevel=TOP,
+        build_dir=tmp_path,
+        build_args=ARGUMENTS[simulator],
+        always=True,
+        timescale=("1ns", "1ps"),
+        log_file=tmp_path / "build.log",
     )
     results = runner.test(
-        hdl_toplevel=TOP, test_module="cocotb_core", build_dir=tmp_path, test_dir=tmp_path,
-        results_xml=str(tmp_path / "results.xml"), extra_env={"PYTHONPATH": f"{TESTS}:{TESTS.parent}"},
+        hdl_toplevel=TOP,
+        test_module="cocotb_core",
+        build_dir=tmp_path,
+        test_dir=tmp_path,
+        results_xml=str(tmp_path / "results.xml"),
+        extra_env={"PYTHONPATH": f"{TESTS}:{TESTS.parent}"},
     )
     cases = ElementTree.parse(results).getroot().iter("testcase")
     names = [case.get("name") for case in cases]

@@ -1,4 +1,5 @@
 """The documents beside the README are true: the tutorial runs, figures are the code's, links lead somewhere."""
+
 import re
 
 import documents
@@ -61,28 +62,37 @@ def test_the_readme_links_to_it(path):
 
 def figures_of_the_method():
     return [
-        f"{RK4.stages} evaluations of\nall edges", f"must stay below {stability.HALF_DISC}, of which "
-        f"{stability.TURNING} is used", f"whole number of {FORMATS.state} bits",
-        f"last bit is 2^-{FORMATS.position.frac_bits} of the object's size", f"factors of {FORMATS.operand} bits",
+        f"{RK4.stages} evaluations of\nall edges",
+        f"must stay below {stability.HALF_DISC}, of which {stability.TURNING} is used",
+        f"whole number of {FORMATS.state} bits",
+        f"last bit is 2^-{FORMATS.position.frac_bits} of the object's size",
+        f"factors of {FORMATS.operand} bits",
         f"below {power(BOUND[False])} of the\nobject's size, and {power(BOUND[True])} with dampers",
         f"holds {PARAMETERS.nodes} nodes and {PARAMETERS.edges} edges, {PARAMETERS.materials} materials, and "
-        f"{PARAMETERS.tables} of them", f"no more than {capacity.most_at_a_node(FORMATS)} edges may meet at a node",
+        f"{PARAMETERS.tables} of them",
+        f"no more than {capacity.most_at_a_node(FORMATS)} edges may meet at a node",
     ]
 
 
 def figures_of_the_circuit():
-    edge, node = ([n for n in datapath.graph.nodes if n.kind == "mul" and not PARAMETERS.cost.narrow_product(n)]
-                  for datapath in datapaths(PARAMETERS))
+    edge, node = (
+        [n for n in datapath.graph.nodes if n.kind == "mul" and not PARAMETERS.cost.narrow_product(n)]
+        for datapath in datapaths(PARAMETERS)
+    )
     cycles = {what: number for _, what, number in latencies(PARAMETERS)}
     busiest = cycles_per_step(scene.load(ROOT / "scenes" / "viscoelastic-3d.toml"), PARAMETERS.lanes, 1)
     return [
-        f"takes {RK4.stages} rounds", f"{len(edge)} multipliers of {FORMATS.operand} bits",
-        f"sums {cycles['issue to its force on both nodes']} cycles after", f"another {len(node)} multipliers",
+        f"takes {RK4.stages} rounds",
+        f"{len(edge)} multipliers of {FORMATS.operand} bits",
+        f"sums {cycles['issue to its force on both nodes']} cycles after",
+        f"another {len(node)} multipliers",
         f"copy {cycles[UPDATED]} cycles later",
         f"wide enough for {capacity.most_at_a_node(FORMATS)}\nedges",
         f"At least {cycles['an edge to the next edge of the same node, at least']} cycles lie",
-        f"{busiest} cycles are {busiest / 100:.1f} microseconds", f"words of {FORMATS.state} bits",
-        f"factors have {FORMATS.operand} bits", f"with {1 << FORMATS.inverse_index.width} straight pieces",
+        f"{busiest} cycles are {busiest / 100:.1f} microseconds",
+        f"words of {FORMATS.state} bits",
+        f"factors have {FORMATS.operand} bits",
+        f"with {1 << FORMATS.inverse_index.width} straight pieces",
         f"two curves of {1 << FORMATS.damper_index.width} pieces",
         f"for {PARAMETERS.nodes} nodes and {PARAMETERS.edges} edges",
     ]

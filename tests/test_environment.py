@@ -1,4 +1,5 @@
 """environment.py: what is missing is named, nothing is installed twice, an interruption is made good."""
+
 import re
 import shutil
 import subprocess
@@ -19,23 +20,27 @@ def lacking(monkeypatch):
     def lack(*names):
         which, find = environment.shutil.which, environment.importlib.util.find_spec
         monkeypatch.setattr(environment.shutil, "which", lambda name: None if name in names else which(name))
-        monkeypatch.setattr(environment.importlib.util, "find_spec",
-                            lambda name: None if name in names else find(name))
+        monkeypatch.setattr(environment.importlib.util, "find_spec", lambda name: None if name in names else find(name))
         if "libpython" in names:
             monkeypatch.setattr(environment, "libpython", lambda: False)
 
     return lack
 
 
-@pytest.mark.parametrize("name, message", [
-    ("c++", "error: a C++ compiler (c++) is missing: install it (Debian: apt install g++)"),
-    ("make", "error: make is missing: install it (Debian: apt install make)"),
-    ("perl", "error: perl is missing: install it (Debian: apt install perl)"),
-    ("ensurepip", "error: Python's venv module is missing: "
-                  f"install it (Debian: apt install python{VERSION}-venv)"),
-    ("libpython", f"error: the shared library of Python {VERSION} is missing: "
-                  f"install it (Debian: apt install libpython{VERSION})"),
-])
+@pytest.mark.parametrize(
+    "name, message",
+    [
+        ("c++", "error: a C++ compiler (c++) is missing: install it (Debian: apt install g++)"),
+        ("make", "error: make is missing: install it (Debian: apt install make)"),
+        ("perl", "error: perl is missing: install it (Debian: apt install perl)"),
+        ("ensurepip", f"error: Python's venv module is missing: install it (Debian: apt install python{VERSION}-venv)"),
+        (
+            "libpython",
+            f"error: the shared library of Python {VERSION} is missing: "
+            f"install it (Debian: apt install libpython{VERSION})",
+        ),
+    ],
+)
 def test_names_what_is_missing(lacking, monkeypatch, capsys, name, message):
     monkeypatch.setattr(environment, "install", lambda: pytest.fail("nothing may be installed"))
     lacking(name)
@@ -56,8 +61,10 @@ def test_a_browser_is_looked_for_but_nothing_waits_for_it(lacking):
 
 def test_old_python(monkeypatch):
     monkeypatch.setattr(environment, "OLDEST", (3, 99))
-    assert environment.missing() == [f"python3 must be Python 3.99 or newer, not {VERSION}: install one, "
-                                     "or name the one to use: make PYTHON=python3.12"]
+    assert environment.missing() == [
+        f"python3 must be Python 3.99 or newer, not {VERSION}: install one, "
+        "or name the one to use: make PYTHON=python3.12"
+    ]
 
 
 def test_shared_library_is_looked_for(monkeypatch):
@@ -91,11 +98,14 @@ def test_installs_once(checkout):
         assert ran == ["venv", "pip"]
 
 
-@pytest.mark.parametrize("disturb", [
-    lambda root: (root / ".venv" / "installed").unlink(),  # what an interruption leaves behind
-    lambda root: (root / ".venv" / "bin" / "python").unlink(),  # the Python it was made from has gone
-    lambda root: (root / "requirements.lock").write_text("numpy==2.4.6\n"),
-])
+@pytest.mark.parametrize(
+    "disturb",
+    [
+        lambda root: (root / ".venv" / "installed").unlink(),  # what an interruption leaves behind
+        lambda root: (root / ".venv" / "bin" / "python").unlink(),  # the Python it was made from has gone
+        lambda root: (root / "requirements.lock").write_text("numpy==2.4.6\n"),
+    ],
+)
 def test_installs_again(checkout, disturb):
     root, ran = checkout
     environment.install(root)
@@ -151,7 +161,12 @@ def test_every_dependency_has_a_reason():
 
 
 def test_make_help_lists_every_target():
-    done = subprocess.run(["make", "--no-print-directory", "help", f"PYTHON={sys.executable}"], cwd=ROOT,
-                          capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["make", "--no-print-directory", "help", f"PYTHON={sys.executable}"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     phony = re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.M)[1].split()
     assert {line.split()[1] for line in done.stdout.splitlines()} == set(phony) - {"environment"}

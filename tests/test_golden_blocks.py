@@ -73,10 +73,14 @@ def under_gravity(material, dt, time=0.12):
     return (initial - final) / SIDE
 
 
-@pytest.mark.parametrize(("linear", "force_dependent", "dt"), [
-    (rheological("dough", 500.0, 5.0, SOFT), rheological_force("loaf", 500.0, 5.0, **STRONG), 5e-4),
-    (plastic("clay", SOFT), plastic_force("loam", 10 * STIFF, **STRONG), 2e-5),
-], ids=["rheological", "plastic"])
+@pytest.mark.parametrize(
+    ("linear", "force_dependent", "dt"),
+    [
+        (rheological("dough", 500.0, 5.0, SOFT), rheological_force("loaf", 500.0, 5.0, **STRONG), 5e-4),
+        (plastic("clay", SOFT), plastic_force("loam", 10 * STIFF, **STRONG), 2e-5),
+    ],
+    ids=["rheological", "plastic"],
+)
 def test_section_6_gravity(linear, force_dependent, dt):
     """A linear damper lets the block collapse; one as soft at large forces, stiff at small ones, does not."""
     assert under_gravity(linear, 5e-4) > 0.3

@@ -1,4 +1,5 @@
 """Irregular meshes: the body that was asked for, no bad element, the same for the same seed."""
+
 from math import pi, sin
 
 import numpy as np
@@ -125,20 +126,29 @@ def test_a_seed_gives_one_mesh(name):
     assert one.points.shape != other.points.shape or not np.array_equal(one.points, other.points)
 
 
-@pytest.mark.parametrize(("kind", "parameters", "message"), [
-    ("ring", {"outer": 0.05, "inner": 0.05, "edge": 0.01}, "inner must be below outer = 0.05, not 0.05"),
-    ("ring", {"outer": 0.05, "inner": 0.04, "edge": 0.02}, "edge must be at most 0.01, the width, not 0.02"),
-    ("disc", {"radius": 0.05, "edge": 0.06}, "edge must be at most 0.05, the radius, not 0.06"),
-    ("ball", {"radius": 0.05, "edge": 0.06}, "edge must be at most 0.05, the radius, not 0.06"),
-    ("cylinder", {"radius": 0.05, "height": 0.02, "edge": 0.03},
-     "edge must be at most 0.02, the radius and height, not 0.03"),
-    ("irregular", {"radius": 0.1, "edge": 0.08},
-     "edge must be at most 0.07, the least radius of its outline, not 0.08"),
-    ("beam", {"size": [0.1, 0.02], "edge": 0.03}, "edge must be at most 0.02, the shortest side, not 0.03"),
-    ("beam", {"size": [0.1], "edge": 0.03}, "size must be 2 or 3 numbers above 0, not [0.1]"),
-    ("beam", {"size": [0.1, 0.0], "edge": 0.03}, "size must be 2 or 3 numbers above 0, not [0.1, 0.0]"),
-    ("ball", {"radius": 0.05, "edge": 0.001}, "edge must be at least 0.0064, for 2000 nodes at most, not 0.001"),
-])
+@pytest.mark.parametrize(
+    ("kind", "parameters", "message"),
+    [
+        ("ring", {"outer": 0.05, "inner": 0.05, "edge": 0.01}, "inner must be below outer = 0.05, not 0.05"),
+        ("ring", {"outer": 0.05, "inner": 0.04, "edge": 0.02}, "edge must be at most 0.01, the width, not 0.02"),
+        ("disc", {"radius": 0.05, "edge": 0.06}, "edge must be at most 0.05, the radius, not 0.06"),
+        ("ball", {"radius": 0.05, "edge": 0.06}, "edge must be at most 0.05, the radius, not 0.06"),
+        (
+            "cylinder",
+            {"radius": 0.05, "height": 0.02, "edge": 0.03},
+            "edge must be at most 0.02, the radius and height, not 0.03",
+        ),
+        (
+            "irregular",
+            {"radius": 0.1, "edge": 0.08},
+            "edge must be at most 0.07, the least radius of its outline, not 0.08",
+        ),
+        ("beam", {"size": [0.1, 0.02], "edge": 0.03}, "edge must be at most 0.02, the shortest side, not 0.03"),
+        ("beam", {"size": [0.1], "edge": 0.03}, "size must be 2 or 3 numbers above 0, not [0.1]"),
+        ("beam", {"size": [0.1, 0.0], "edge": 0.03}, "size must be 2 or 3 numbers above 0, not [0.1, 0.0]"),
+        ("ball", {"radius": 0.05, "edge": 0.001}, "edge must be at least 0.0064, for 2000 nodes at most, not 0.001"),
+    ],
+)
 def test_what_cannot_be_filled_is_refused(kind, parameters, message):
     with pytest.raises(InputError) as error:
         mesh.filled(kind, **parameters)
@@ -147,8 +157,10 @@ def test_what_cannot_be_filled_is_refused(kind, parameters, message):
 
 def test_a_mesh_with_a_bad_element_is_refused():
     """So coarse that cells with all of their corners on the surface cannot be good."""
-    message = ("edge must leave elements with a radius ratio of at least 0.3, not 0: "
-               "choose a smaller one than 0.05, or another seed")
+    message = (
+        "edge must leave elements with a radius ratio of at least 0.3, not 0: "
+        "choose a smaller one than 0.05, or another seed"
+    )
     with pytest.raises(InputError) as error:
         mesh.filled("beam", size=[0.6, 0.07, 0.05], edge=0.05)
     assert str(error.value) == message

@@ -69,7 +69,7 @@ def reference(problem, velocity, time, method, linear=True, **tolerances):
     free = ~problem.phases[0].fixed
 
     def rates(_, y):
-        x, v, a = y[: DIM * n].reshape(n, DIM), y[DIM * n: 2 * DIM * n].reshape(n, DIM), y[2 * DIM * n:]
+        x, v, a = y[: DIM * n].reshape(n, DIM), y[DIM * n : 2 * DIM * n].reshape(n, DIM), y[2 * DIM * n :]
         total = problem.mass[:, None] * problem.gravity
         apart = x[edges[:, 1]] - x[edges[:, 0]]
         length = np.sqrt((apart**2).sum(axis=1))
@@ -98,7 +98,7 @@ def test_runge_kutta_converges_with_order_four(rng):
     time = 0.2
     problem, velocity = thrown(rng, LINEAR)
     exact = reference(problem, velocity, time, "DOP853", rtol=1e-13, atol=1e-15)
-    assert (exact[-len(problem.mesh.edges):] < 0.95).all()  # smooth: no ratio was near its clamp
+    assert (exact[-len(problem.mesh.edges) :] < 0.95).all()  # smooth: no ratio was near its clamp
     errors = np.array([np.linalg.norm(run(problem, velocity, time, n) - exact) for n in (96, 192, 384)])
     orders = np.log2(errors[:-1] / errors[1:])
     print("errors", errors, "orders", orders)
@@ -122,8 +122,10 @@ def test_irregular_object_agrees_with_scipy(rng, method, tolerance):
 
 def test_force_dependent_dampers_agree_with_scipy(rng):
     """The law has kinks at f1 and f2, where the order is lower: a step of 2.5e-4 s across one leaves dt^2."""
-    materials = [rheological_force("loaf", 20.0, 0.3, f1=0.02, f2=0.2, c_max=3.0, c_min=0.3),
-                 rheological_force("dough", 30.0, 1.0, f1=0.05, f2=0.1, c_max=1.0, c_min=0.2)]
+    materials = [
+        rheological_force("loaf", 20.0, 0.3, f1=0.02, f2=0.2, c_max=3.0, c_min=0.3),
+        rheological_force("dough", 30.0, 1.0, f1=0.05, f2=0.1, c_max=1.0, c_min=0.2),
+    ]
     time, steps = 0.1, 400
     problem, velocity = thrown(rng, materials)
     exact = reference(problem, velocity, time, "DOP853", linear=False, rtol=1e-9, atol=1e-11)

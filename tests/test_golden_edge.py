@@ -56,14 +56,23 @@ class Edges:
         """The named quantities of `golden.edge.edge` in the first stage."""
         record = {name: self.number(self.record[name], q) for name, q in records.material(FMT, 1).items()}
         stage = {name: self.number(bit, BIT) for name, bit in RK4.stage(0).items()}
-        ends = [SimpleNamespace(x=self.vector(x, FMT.position), v=self.vector(v, FMT.velocity))
-                for x, v in zip(self.x, self.v, strict=True)]
+        ends = [
+            SimpleNamespace(x=self.vector(x, FMT.position), v=self.vector(v, FMT.velocity))
+            for x, v in zip(self.x, self.v, strict=True)
+        ]
         ratio = self.number(self.ratio, FMT.ratio)
         length = self.number(self.length if length is None else length, FMT.length)
         state = SimpleNamespace(length=length, base=ratio, ratio=ratio, total=self.number(0 * self.ratio, FMT.ratio))
         shift = self.number(self.units.velocity_shift, FMT.exponent)
-        return edge(FMT, self.tables, SimpleNamespace(**stage), shift, SimpleNamespace(**record),
-                    *(ends[::-1] if swap else ends), state)
+        return edge(
+            FMT,
+            self.tables,
+            SimpleNamespace(**stage),
+            shift,
+            SimpleNamespace(**record),
+            *(ends[::-1] if swap else ends),
+            state,
+        )
 
     def exact(self):
         """Equations (1) to (3) in float64 and SI, from the very integers that the datapath gets."""

@@ -15,14 +15,17 @@ FMT = Formats()
 WORDS = [(12, 24), (14, 32), (16, 32), (18, 36), (20, 40), (22, 44)]
 
 
-@pytest.mark.parametrize(("operand", "state", "message"), [
-    (11, 36, "operand must be 12 to 24 bits, not 11"),
-    (25, 44, "operand must be 12 to 24 bits, not 25"),
-    (12, 23, "state must be 24 to 44 bits, not 23"),
-    (18, 45, "state must be 24 to 44 bits, not 45"),
-    (19, 36, "operand must be at most 18 bits, half of a state word, not 19"),
-    (24, 44, "operand must be at most 22 bits, half of a state word, not 24"),
-])
+@pytest.mark.parametrize(
+    ("operand", "state", "message"),
+    [
+        (11, 36, "operand must be 12 to 24 bits, not 11"),
+        (25, 44, "operand must be 12 to 24 bits, not 25"),
+        (12, 23, "state must be 24 to 44 bits, not 23"),
+        (18, 45, "state must be 24 to 44 bits, not 45"),
+        (19, 36, "operand must be at most 18 bits, half of a state word, not 19"),
+        (24, 44, "operand must be at most 22 bits, half of a state word, not 24"),
+    ],
+)
 def test_word_lengths_out_of_range_are_refused(operand, state, message):
     with pytest.raises(ValueError, match=f"^{message}$"):
         Formats(operand, state)

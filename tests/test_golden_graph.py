@@ -145,8 +145,10 @@ def test_the_graph_of_a_node_computes_the_node(banks, stage, rng):
 
 
 GRAPHS = {
-    "edge": edge_graph(Formats(), 1), "edge, 64 tables": edge_graph(Formats(), 64),
-    "node": node_graph(Formats(), 1), "node, 8 accumulators": node_graph(Formats(), 8),
+    "edge": edge_graph(Formats(), 1),
+    "edge, 64 tables": edge_graph(Formats(), 64),
+    "node": node_graph(Formats(), 1),
+    "node, 8 accumulators": node_graph(Formats(), 8),
 }
 
 

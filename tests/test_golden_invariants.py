@@ -53,10 +53,16 @@ def test_the_centre_of_a_free_object_moves_uniformly(rng, dim):
     assert problem.mass @ run(problem, velocity).x == pytest.approx(expected, abs=1e-12)
 
 
-@pytest.mark.parametrize("material", [
-    viscoelastic("gum", 30.0, 0.3), plastic("clay", 0.2),
-    rheological("dough", 20.0, 0.3, 0.5), rheological("no c1", 20.0, 0.0, 0.5),
-], ids=lambda m: m.name)
+@pytest.mark.parametrize(
+    "material",
+    [
+        viscoelastic("gum", 30.0, 0.3),
+        plastic("clay", 0.2),
+        rheological("dough", 20.0, 0.3, 0.5),
+        rheological("no c1", 20.0, 0.0, 0.5),
+    ],
+    ids=lambda m: m.name,
+)
 @pytest.mark.parametrize("dim", GRIDS)
 def test_energy_never_grows(rng, dim, material):
     """Kinetic energy and that of the springs, k (a l - L)^2 / 2, while no ratio is at its clamp."""
@@ -108,8 +114,13 @@ def test_renumbered_objects_do_the_same(rng, dim):
     ends = np.sort(new[problem.mesh.edges], axis=1)
     edge_order = np.lexsort(ends.T[::-1])
     grid = mesh.Mesh(problem.mesh.points[order], new[problem.mesh.cells], ends[edge_order])
-    renumbered = replace(problem, mesh=grid, mass=problem.mass[order], phases=(phase(grid, problem.steps),),
-                         edge_material=problem.edge_material[edge_order])
+    renumbered = replace(
+        problem,
+        mesh=grid,
+        mass=problem.mass[order],
+        phases=(phase(grid, problem.steps),),
+        edge_material=problem.edge_material[edge_order],
+    )
     original, other = run(problem, velocity), run(renumbered, velocity[order])
     tolerance = problem.steps * 20 * EPS
     np.testing.assert_allclose(other.x, original.x[order], atol=tolerance)

@@ -19,13 +19,16 @@ VALID = {
 inf = math.inf
 
 
-@pytest.mark.parametrize(("preset", "expected"), [
-    ("viscoelastic", Material("m", 100.0, 1.0, inf, inf, inf, inf, 1.0, 1.0, 1.0)),
-    ("plastic", Material("m", 0.0, 4.0, 4.0, 4.0, inf, inf, 0.0, 1.0, 0.5)),
-    ("rheological", Material("m", 100.0, 1.0, 3.0, 3.0, inf, inf, 0.0, 1.0, 0.5)),
-    ("rheological-force", Material("m", 100.0, 1.0, 100.0, 1.0, 0.5, 2.0, 0.0, 1.0, 0.5)),
-    ("plastic-force", Material("m", 0.0, 900.0, 100.0, 1.0, 0.5, 2.0, 0.0, 1.0, 0.1)),
-])
+@pytest.mark.parametrize(
+    ("preset", "expected"),
+    [
+        ("viscoelastic", Material("m", 100.0, 1.0, inf, inf, inf, inf, 1.0, 1.0, 1.0)),
+        ("plastic", Material("m", 0.0, 4.0, 4.0, 4.0, inf, inf, 0.0, 1.0, 0.5)),
+        ("rheological", Material("m", 100.0, 1.0, 3.0, 3.0, inf, inf, 0.0, 1.0, 0.5)),
+        ("rheological-force", Material("m", 100.0, 1.0, 100.0, 1.0, 0.5, 2.0, 0.0, 1.0, 0.5)),
+        ("plastic-force", Material("m", 0.0, 900.0, 100.0, 1.0, 0.5, 2.0, 0.0, 1.0, 0.1)),
+    ],
+)
 def test_presets_give_the_table_of_the_design(preset, expected):
     material = PRESETS[preset]("m", **VALID[preset])
     assert material == expected
@@ -160,27 +163,38 @@ def test_each_parameter_must_be_a_finite_number(preset, value):
         assert str(error.value) == (NOT_NEGATIVE if zero_allowed else POSITIVE).format(name, value)
 
 
-@pytest.mark.parametrize(("preset", "name"), [
-    ("viscoelastic", "k"), ("plastic", "c_damper"), ("rheological", "k"), ("rheological", "c2"),
-    ("rheological-force", "f2"), ("rheological-force", "c_max"), ("rheological-force", "c_min"),
-    ("plastic-force", "c1"),
-])
+@pytest.mark.parametrize(
+    ("preset", "name"),
+    [
+        ("viscoelastic", "k"),
+        ("plastic", "c_damper"),
+        ("rheological", "k"),
+        ("rheological", "c2"),
+        ("rheological-force", "f2"),
+        ("rheological-force", "c_max"),
+        ("rheological-force", "c_min"),
+        ("plastic-force", "c1"),
+    ],
+)
 def test_zero_where_it_has_no_meaning(preset, name):
     with pytest.raises(InputError) as error:
         PRESETS[preset]("m", **VALID[preset] | {name: 0.0})
     assert str(error.value) == POSITIVE.format(name, 0.0)
 
 
-@pytest.mark.parametrize(("preset", "change", "message"), [
-    ("rheological", dict(a_max=1.5), "a_max must be at most 1, not 1.5"),
-    ("rheological", dict(a0=1.1), "a0 must be at most 1, not 1.1"),
-    ("rheological", dict(a_min=0.6, a_max=0.4), "a_min must be at most a_max = 0.4, not 0.6"),
-    ("rheological", dict(a_min=0.6), "a0 must lie between a_min = 0.6 and a_max = 1.0, not 0.5"),
-    ("rheological-force", dict(a_max=0.4), "a0 must lie between a_min = 0.0 and a_max = 0.4, not 0.5"),
-    ("rheological-force", dict(f1=2.0), "f2 must be above f1 = 2.0, not 2.0"),
-    ("plastic-force", dict(f1=3.0), "f2 must be above f1 = 3.0, not 2.0"),
-    ("plastic-force", dict(c_min=200.0), "c_min must be at most c_max = 100.0, not 200.0"),
-])
+@pytest.mark.parametrize(
+    ("preset", "change", "message"),
+    [
+        ("rheological", dict(a_max=1.5), "a_max must be at most 1, not 1.5"),
+        ("rheological", dict(a0=1.1), "a0 must be at most 1, not 1.1"),
+        ("rheological", dict(a_min=0.6, a_max=0.4), "a_min must be at most a_max = 0.4, not 0.6"),
+        ("rheological", dict(a_min=0.6), "a0 must lie between a_min = 0.6 and a_max = 1.0, not 0.5"),
+        ("rheological-force", dict(a_max=0.4), "a0 must lie between a_min = 0.0 and a_max = 0.4, not 0.5"),
+        ("rheological-force", dict(f1=2.0), "f2 must be above f1 = 2.0, not 2.0"),
+        ("plastic-force", dict(f1=3.0), "f2 must be above f1 = 3.0, not 2.0"),
+        ("plastic-force", dict(c_min=200.0), "c_min must be at most c_max = 100.0, not 200.0"),
+    ],
+)
 def test_parameters_must_fit_each_other(preset, change, message):
     with pytest.raises(InputError) as error:
         PRESETS[preset]("m", **VALID[preset] | change)

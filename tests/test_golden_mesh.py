@@ -46,8 +46,11 @@ def test_box_fills_its_volume_with_matching_faces(tetrahedra, edges):
     found, cells = faces(grid.cells)
     assert set(cells) == {1, 2}
     outside = grid.points[found[cells == 1]]
-    on_a_side = [(outside[:, :, axis] == side).all(axis=1)
-                 for axis, length in enumerate((1.0, 2.0, 0.5)) for side in (0.0, length)]
+    on_a_side = [
+        (outside[:, :, axis] == side).all(axis=1)
+        for axis, length in enumerate((1.0, 2.0, 0.5))
+        for side in (0.0, length)
+    ]
     assert [side.sum() for side in on_a_side] == 6 * [2 * 16]
     assert np.any(on_a_side, axis=0).all()
 
@@ -58,16 +61,26 @@ def test_box_of_one_cell(tetrahedra):
     assert len(grid.edges) == 12 + 6 + (tetrahedra == 6)
 
 
-@pytest.mark.parametrize("grid", [mesh.rectangle((4, 3), (1.0, 1.0)), mesh.box((3, 4, 2), (1.0, 1.0, 1.0), 5),
-                                  mesh.box((3, 4, 2), (1.0, 1.0, 1.0), 6)])
+@pytest.mark.parametrize(
+    "grid",
+    [
+        mesh.rectangle((4, 3), (1.0, 1.0)),
+        mesh.box((3, 4, 2), (1.0, 1.0, 1.0), 5),
+        mesh.box((3, 4, 2), (1.0, 1.0, 1.0), 6),
+    ],
+)
 def test_edges_are_those_of_the_cells_once_each_in_order(grid):
     pairs = {tuple(sorted(pair)) for cell in grid.cells.tolist() for pair in combinations(cell, 2)}
     assert sorted(pairs) == [tuple(edge) for edge in grid.edges.tolist()]
 
 
 def test_grids_and_reordered_cells_have_positive_orientation():
-    for grid in (mesh.rectangle((4, 3), (1.0, 1.0)), mesh.box((3, 3, 3), (1.0, 1.0, 1.0)),
-                 mesh.from_cells(SQUARE, TRIANGLES[:, ::-1]), mesh.from_cells(CORNER, [[0, 2, 1, 3]])):
+    for grid in (
+        mesh.rectangle((4, 3), (1.0, 1.0)),
+        mesh.box((3, 3, 3), (1.0, 1.0, 1.0)),
+        mesh.from_cells(SQUARE, TRIANGLES[:, ::-1]),
+        mesh.from_cells(CORNER, [[0, 2, 1, 3]]),
+    ):
         sides = grid.points[grid.cells[:, 1:]] - grid.points[grid.cells[:, :1]]
         assert (np.linalg.det(sides) > 0).all()
 
@@ -86,53 +99,81 @@ def test_parts_are_found():
     assert mesh.rectangle((3, 3), (1.0, 1.0)).components()[0] == 1
 
 
-@pytest.mark.parametrize(("build", "message"), [
-    (lambda: mesh.rectangle((5,), (1.0, 1.0)), "nodes must be 2 whole numbers of at least 2, not [5]"),
-    (lambda: mesh.rectangle((5, 1), (1.0, 1.0)), "nodes must be 2 whole numbers of at least 2, not [5, 1]"),
-    (lambda: mesh.rectangle((5, 2.0), (1, 1)), "nodes must be 2 whole numbers of at least 2, not [5, 2.0]"),
-    (lambda: mesh.box((5, 2), (1.0, 1.0, 1.0)), "nodes must be 3 whole numbers of at least 2, not [5, 2]"),
-    (lambda: mesh.rectangle((5, 2), (1.0,)), "size must be 2 finite numbers above 0, not [1.0]"),
-    (lambda: mesh.rectangle((5, 2), (1.0, 0.0)), "size must be 2 finite numbers above 0, not [1.0, 0.0]"),
-    (lambda: mesh.box((2, 2, 2), (1, -1, 1)), "size must be 3 finite numbers above 0, not [1, -1, 1]"),
-    (lambda: mesh.box((2, 2, 2), (1, np.inf, 1)), "size must be 3 finite numbers above 0, not [1, inf, 1]"),
-    (lambda: mesh.box((2, 2, 2), (1, 1, 1), 7), "tetrahedra must be 5 or 6, not 7"),
-    (lambda: mesh.from_cells(SQUARE, [[0, 1, 4]]), "cells must be made of the points 0 to 3, not 4"),
-    (lambda: mesh.from_cells(SQUARE, [[0, 1, -1]]), "cells must be made of the points 0 to 3, not -1"),
-    (lambda: mesh.from_cells(SQUARE, np.empty((0, 3))), "cells must not be empty"),
-    (lambda: mesh.from_cells(SQUARE, [[0, 1, 2], [1, 3, 2], [2, 0, 1]]),
-     "cells must all differ, but cells 0 and 2 have the same nodes: remove one"),
-    (lambda: mesh.from_cells(SQUARE, [[0, 1, 2], [1, 3, 3]]),
-     "cells must all have an area, unlike cell 1 (points [1, 3, 3])"),
-    (lambda: mesh.from_cells([[0, 0], [0.1, 0.1], [0.3, 0.3]], [[0, 1, 2]]),
-     "cells must all have an area, unlike cell 0 (points [0, 1, 2])"),
-    (lambda: mesh.from_cells(np.column_stack([SQUARE, np.zeros(4)]), [[0, 1, 2, 3]]),
-     "cells must all have a volume, unlike cell 0 (points [0, 1, 2, 3])"),
-    (lambda: mesh.from_cells([*SQUARE, [3, 3]], [[0, 1, 2], [1, 3, 2], [1, 4, 2]]),
-     "cells must meet two at an edge, but 3 have the points [1, 2]: remove those that overlap"),
-    (lambda: mesh.from_cells([*CORNER, [1, 1, 1], [0, 0, -1]], [[0, 1, 2, 3], [0, 1, 2, 4], [0, 1, 2, 5]]),
-     "cells must meet two at a face, but 3 have the points [0, 1, 2]: remove those that overlap"),
-    (lambda: mesh.from_cells(SQUARE, [[0, 1, 2]]),
-     "points must all belong to a cell, but point 3 does not: remove it (1 of 4 are isolated)"),
-    (lambda: mesh.from_cells(SQUARE[[0, 1, 2, 1, 3, 2]], [[0, 1, 2], [3, 4, 5]]),
-     "points must all differ, but 1 and 3 are at the same place: "
-     "merge them (an edge of zero length has no direction)"),
-    (lambda: mesh.from_cells(np.float32(SQUARE[[0, 1, 2, 1, 3, 2]] / 3) + np.eye(6, 2, -4) * 1e-7,
-                             [[0, 1, 2], [3, 4, 5]]),  # a seam that another program has rounded
-     "points must all differ, but 1 and 3 are at the same place: "
-     "merge them (an edge of zero length has no direction)"),
-    (lambda: mesh.from_cells(SQUARE * np.nan, TRIANGLES),
-     "points must be finite coordinates in 2 or 3 dimensions"),
-    (lambda: mesh.from_cells(SQUARE[:, :1], TRIANGLES),
-     "points must be finite coordinates in 2 or 3 dimensions"),
-    (lambda: mesh.Mesh(SQUARE + np.inf, TRIANGLES, TRIANGLES[:, :2]),
-     "points must be finite coordinates in 2 or 3 dimensions"),
-    (lambda: mesh.Mesh(SQUARE[:2], TRIANGLES[:0], np.array([[1, 0]])),
-     "edges must be pairs i < j in ascending order, each given once"),
-    (lambda: mesh.Mesh(SQUARE[:2], TRIANGLES[:0], np.array([[0, 1], [0, 1]])),
-     "edges must be pairs i < j in ascending order, each given once"),
-    (lambda: mesh.Mesh(SQUARE[:2], TRIANGLES[:0], np.array([[0, 2]])),
-     "edges must be made of the points 0 to 1, not 2"),
-])
+@pytest.mark.parametrize(
+    ("build", "message"),
+    [
+        (lambda: mesh.rectangle((5,), (1.0, 1.0)), "nodes must be 2 whole numbers of at least 2, not [5]"),
+        (lambda: mesh.rectangle((5, 1), (1.0, 1.0)), "nodes must be 2 whole numbers of at least 2, not [5, 1]"),
+        (lambda: mesh.rectangle((5, 2.0), (1, 1)), "nodes must be 2 whole numbers of at least 2, not [5, 2.0]"),
+        (lambda: mesh.box((5, 2), (1.0, 1.0, 1.0)), "nodes must be 3 whole numbers of at least 2, not [5, 2]"),
+        (lambda: mesh.rectangle((5, 2), (1.0,)), "size must be 2 finite numbers above 0, not [1.0]"),
+        (lambda: mesh.rectangle((5, 2), (1.0, 0.0)), "size must be 2 finite numbers above 0, not [1.0, 0.0]"),
+        (lambda: mesh.box((2, 2, 2), (1, -1, 1)), "size must be 3 finite numbers above 0, not [1, -1, 1]"),
+        (lambda: mesh.box((2, 2, 2), (1, np.inf, 1)), "size must be 3 finite numbers above 0, not [1, inf, 1]"),
+        (lambda: mesh.box((2, 2, 2), (1, 1, 1), 7), "tetrahedra must be 5 or 6, not 7"),
+        (lambda: mesh.from_cells(SQUARE, [[0, 1, 4]]), "cells must be made of the points 0 to 3, not 4"),
+        (lambda: mesh.from_cells(SQUARE, [[0, 1, -1]]), "cells must be made of the points 0 to 3, not -1"),
+        (lambda: mesh.from_cells(SQUARE, np.empty((0, 3))), "cells must not be empty"),
+        (
+            lambda: mesh.from_cells(SQUARE, [[0, 1, 2], [1, 3, 2], [2, 0, 1]]),
+            "cells must all differ, but cells 0 and 2 have the same nodes: remove one",
+        ),
+        (
+            lambda: mesh.from_cells(SQUARE, [[0, 1, 2], [1, 3, 3]]),
+            "cells must all have an area, unlike cell 1 (points [1, 3, 3])",
+        ),
+        (
+            lambda: mesh.from_cells([[0, 0], [0.1, 0.1], [0.3, 0.3]], [[0, 1, 2]]),
+            "cells must all have an area, unlike cell 0 (points [0, 1, 2])",
+        ),
+        (
+            lambda: mesh.from_cells(np.column_stack([SQUARE, np.zeros(4)]), [[0, 1, 2, 3]]),
+            "cells must all have a volume, unlike cell 0 (points [0, 1, 2, 3])",
+        ),
+        (
+            lambda: mesh.from_cells([*SQUARE, [3, 3]], [[0, 1, 2], [1, 3, 2], [1, 4, 2]]),
+            "cells must meet two at an edge, but 3 have the points [1, 2]: remove those that overlap",
+        ),
+        (
+            lambda: mesh.from_cells([*CORNER, [1, 1, 1], [0, 0, -1]], [[0, 1, 2, 3], [0, 1, 2, 4], [0, 1, 2, 5]]),
+            "cells must meet two at a face, but 3 have the points [0, 1, 2]: remove those that overlap",
+        ),
+        (
+            lambda: mesh.from_cells(SQUARE, [[0, 1, 2]]),
+            "points must all belong to a cell, but point 3 does not: remove it (1 of 4 are isolated)",
+        ),
+        (
+            lambda: mesh.from_cells(SQUARE[[0, 1, 2, 1, 3, 2]], [[0, 1, 2], [3, 4, 5]]),
+            "points must all differ, but 1 and 3 are at the same place: "
+            "merge them (an edge of zero length has no direction)",
+        ),
+        (
+            lambda: mesh.from_cells(
+                np.float32(SQUARE[[0, 1, 2, 1, 3, 2]] / 3) + np.eye(6, 2, -4) * 1e-7, [[0, 1, 2], [3, 4, 5]]
+            ),  # a seam that another program has rounded
+            "points must all differ, but 1 and 3 are at the same place: "
+            "merge them (an edge of zero length has no direction)",
+        ),
+        (lambda: mesh.from_cells(SQUARE * np.nan, TRIANGLES), "points must be finite coordinates in 2 or 3 dimensions"),
+        (lambda: mesh.from_cells(SQUARE[:, :1], TRIANGLES), "points must be finite coordinates in 2 or 3 dimensions"),
+        (
+            lambda: mesh.Mesh(SQUARE + np.inf, TRIANGLES, TRIANGLES[:, :2]),
+            "points must be finite coordinates in 2 or 3 dimensions",
+        ),
+        (
+            lambda: mesh.Mesh(SQUARE[:2], TRIANGLES[:0], np.array([[1, 0]])),
+            "edges must be pairs i < j in ascending order, each given once",
+        ),
+        (
+            lambda: mesh.Mesh(SQUARE[:2], TRIANGLES[:0], np.array([[0, 1], [0, 1]])),
+            "edges must be pairs i < j in ascending order, each given once",
+        ),
+        (
+            lambda: mesh.Mesh(SQUARE[:2], TRIANGLES[:0], np.array([[0, 2]])),
+            "edges must be made of the points 0 to 1, not 2",
+        ),
+    ],
+)
 def test_what_cannot_be_an_object_is_refused(build, message):
     with pytest.raises(InputError) as error:
         build()
@@ -223,24 +264,45 @@ PYRAMID = ("pyramid", np.array([[0, 1, 3, 2, 4]]))
 PEAK = np.concatenate([FLAT, [[1.0, 0.5, 9.0]]])
 
 
-@pytest.mark.parametrize(("points", "cells", "message"), [
-    (FLAT, [QUAD], f"file must hold triangles or tetrahedra, not quad (in {{path}}): {HINT}"),
-    (FLAT, BOUNDARY, f"file must hold triangles or tetrahedra, not line, vertex (in {{path}}): {HINT}"),
-    (np.concatenate([FLAT[:3], FLAT[:3] + [0.1, 0.1, 0]]), [("triangle6", np.arange(6)[None])],
-     f"file must hold triangles or tetrahedra, not triangle6 (in {{path}}): {HINT}"),
-    (FLAT, [("triangle", TRIANGLES), QUAD],
-     f"file must hold triangle cells alone, not quad beside them (in {{path}}): {HINT}"),
-    (PEAK, [("tetra", np.array([[0, 1, 2, 4]])), PYRAMID],
-     f"file must hold tetra cells alone, not pyramid beside them (in {{path}}): {HINT}"),
-    (PEAK, [("triangle", np.array([[0, 1, 4], [0, 4, 2], [1, 3, 4]]))],
-     "file must hold triangles in one plane of constant z, not a surface in space (in {path}): "
-     "make the mesh flat, or fill the surface with tetrahedra"),
-    (PEAK, [("triangle", TRIANGLES)],
-     "file must hold triangles in one plane of constant z, not a surface in space (in {path}): "
-     "make the mesh flat, or fill the surface with tetrahedra"),
-    (np.concatenate([FLAT, FLAT[:1] - 1])[:, :2], [("triangle", TRIANGLES)],
-     "points must all belong to a cell, but point 4 does not: remove it (1 of 5 are isolated)"),
-])
+@pytest.mark.parametrize(
+    ("points", "cells", "message"),
+    [
+        (FLAT, [QUAD], f"file must hold triangles or tetrahedra, not quad (in {{path}}): {HINT}"),
+        (FLAT, BOUNDARY, f"file must hold triangles or tetrahedra, not line, vertex (in {{path}}): {HINT}"),
+        (
+            np.concatenate([FLAT[:3], FLAT[:3] + [0.1, 0.1, 0]]),
+            [("triangle6", np.arange(6)[None])],
+            f"file must hold triangles or tetrahedra, not triangle6 (in {{path}}): {HINT}",
+        ),
+        (
+            FLAT,
+            [("triangle", TRIANGLES), QUAD],
+            f"file must hold triangle cells alone, not quad beside them (in {{path}}): {HINT}",
+        ),
+        (
+            PEAK,
+            [("tetra", np.array([[0, 1, 2, 4]])), PYRAMID],
+            f"file must hold tetra cells alone, not pyramid beside them (in {{path}}): {HINT}",
+        ),
+        (
+            PEAK,
+            [("triangle", np.array([[0, 1, 4], [0, 4, 2], [1, 3, 4]]))],
+            "file must hold triangles in one plane of constant z, not a surface in space (in {path}): "
+            "make the mesh flat, or fill the surface with tetrahedra",
+        ),
+        (
+            PEAK,
+            [("triangle", TRIANGLES)],
+            "file must hold triangles in one plane of constant z, not a surface in space (in {path}): "
+            "make the mesh flat, or fill the surface with tetrahedra",
+        ),
+        (
+            np.concatenate([FLAT, FLAT[:1] - 1])[:, :2],
+            [("triangle", TRIANGLES)],
+            "points must all belong to a cell, but point 4 does not: remove it (1 of 5 are isolated)",
+        ),
+    ],
+)
 def test_files_of_anything_else_are_refused(tmp_path, points, cells, message):
     path = tmp_path / "object.vtk"
     meshio.write_points_cells(path, points, [(kind, np.asarray(block)) for kind, block in cells])

@@ -26,8 +26,9 @@ def difference(p, q):
 @pytest.mark.parametrize("a_min", [0.0, 1.0])
 def test_rheological_with_huge_c2_and_ratio_1_is_viscoelastic(a_min):
     expected = squeeze(viscoelastic("gum", 50.0, 2.0))
-    distances = [difference(expected, squeeze(rheological("gel", 50.0, 2.0, 2.0 * huge, a_min, 1.0, 1.0)))
-                 for huge in (1e4, 1e6)]
+    distances = [
+        difference(expected, squeeze(rheological("gel", 50.0, 2.0, 2.0 * huge, a_min, 1.0, 1.0))) for huge in (1e4, 1e6)
+    ]
     # the force is smaller by c1 / c2, the damper yields at f / c2: first order in c1 / c2
     assert distances[0] < 1e-4 and distances[1] < 1e-6
     assert distances[0] / distances[1] == pytest.approx(100, rel=0.02)

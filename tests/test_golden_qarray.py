@@ -30,8 +30,12 @@ def test_sums_and_products_are_those_of_apytypes(operation):
 def test_integers_are_numbers_too(number):
     for q in FORMATS:
         x = QArray(every(q), q, None)
-        for result, exact in ((x + number, x.to_float() + number), (number + x, x.to_float() + number),
-                              (x - number, x.to_float() - number), (number - x, number - x.to_float())):
+        for result, exact in (
+            (x + number, x.to_float() + number),
+            (number + x, x.to_float() + number),
+            (x - number, x.to_float() - number),
+            (number - x, number - x.to_float()),
+        ):
             assert np.array_equal(result.to_float(), exact), q
         assert np.array_equal((x < number).raw, x.to_float() < number)
 
@@ -201,7 +205,15 @@ def test_faults_are_counted_by_name():
 def test_from_float_takes_the_nearest_integers_half_up():
     q = Q(1, 2, name="ratio", unit="1")
     assert QArray.from_float([-1.0, -0.376, -0.375, -0.125, 0.1, 0.125, 0.75, 0.874], q, None).raw.tolist() == [
-        -4, -2, -1, 0, 0, 1, 3, 3]
+        -4,
+        -2,
+        -1,
+        0,
+        0,
+        1,
+        3,
+        3,
+    ]
 
 
 @pytest.mark.parametrize("value", [0.875, -1.126, 3.0])

@@ -24,13 +24,16 @@ def holds(q, values):
     return low <= min(values) and max(values) <= high and all(value % step == 0 for value in values)
 
 
-@pytest.mark.parametrize(("q", "width", "low", "high", "lsb", "text"), [
-    (Q(1, 17), 18, -(2**17), 2**17 - 1, 2.0**-17, "Q1.17"),
-    (Q(0, 18, signed=False), 18, 0, 2**18 - 1, 2.0**-18, "UQ0.18"),
-    (Q(3, -2), 1, -1, 0, 4.0, "Q3.-2"),
-    (unsigned(-8, 24), 16, 0, 2**16 - 1, 2.0**-24, "UQ-8.24"),
-    (BIT, 1, 0, 1, 1.0, "UQ1.0"),
-])
+@pytest.mark.parametrize(
+    ("q", "width", "low", "high", "lsb", "text"),
+    [
+        (Q(1, 17), 18, -(2**17), 2**17 - 1, 2.0**-17, "Q1.17"),
+        (Q(0, 18, signed=False), 18, 0, 2**18 - 1, 2.0**-18, "UQ0.18"),
+        (Q(3, -2), 1, -1, 0, 4.0, "Q3.-2"),
+        (unsigned(-8, 24), 16, 0, 2**16 - 1, 2.0**-24, "UQ-8.24"),
+        (BIT, 1, 0, 1, 1.0, "UQ1.0"),
+    ],
+)
 def test_a_format_is_what_it_says(q, width, low, high, lsb, text):
     assert (q.width, q.raw_min, q.raw_max, q.lsb, str(q)) == (width, low, high, lsb, text)
 

@@ -1,4 +1,5 @@
 """The radius ratio of triangles and tetrahedra whose circles and spheres are known."""
+
 from math import sqrt
 
 import numpy as np
@@ -34,11 +35,16 @@ def test_size_place_and_turn_change_nothing(dim, rng):
     assert np.abs(radius_ratio(cells)).max() <= 1
 
 
-@pytest.mark.parametrize("cell", [
-    [[0, 0], [1, 0], [3, 0]], [[0, 0], [1, 0], [1, 0]],
-    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],  # a sliver: four corners of a square
-    [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 1]], [[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]],
-])
+@pytest.mark.parametrize(
+    "cell",
+    [
+        [[0, 0], [1, 0], [3, 0]],
+        [[0, 0], [1, 0], [1, 0]],
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],  # a sliver: four corners of a square
+        [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 1]],
+        [[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]],
+    ],
+)
 def test_flat_cells_are_0(cell):
     assert radius_ratio(np.array([cell], dtype=float)) == 0
 

@@ -27,10 +27,13 @@ def test_the_tableau_is_of_fourth_order():
     assert sum(b[s] * a[s - 1] * a[s - 2] * c[s - 2] for s in stages[2:]) == F(1, 24)
 
 
-@pytest.mark.parametrize(("reach", "weight", "message"), [
-    ((F(1, 2),), (F(1, 2), F(1, 3)), "weights must add up to 1, not 5/6"),
-    ((F(1, 2),), (F(1, 2), F(1, 4), F(1, 4)), "reach must have 2 entries, not 1"),
-])
+@pytest.mark.parametrize(
+    ("reach", "weight", "message"),
+    [
+        ((F(1, 2),), (F(1, 2), F(1, 3)), "weights must add up to 1, not 5/6"),
+        ((F(1, 2),), (F(1, 2), F(1, 4), F(1, 4)), "reach must have 2 entries, not 1"),
+    ],
+)
 def test_a_tableau_that_is_none_is_refused(reach, weight, message):
     with pytest.raises(ValueError, match=f"^{message}$"):
         Tableau(reach, weight)

@@ -1,4 +1,5 @@
 """The shipped scenes show what their first lines say, in numbers, on the float64 model."""
+
 from dataclasses import replace
 from functools import cache
 
@@ -93,9 +94,11 @@ def test_sides_bulge(name):
     scene, trajectory, ends = run(name)
     initial, pressed = scene.mesh.points, trajectory.x[ends[0]]
     centre = initial.mean(axis=0)
-    middle = np.flatnonzero(np.isclose(initial[:, 2], centre[2])
-                            & (np.isclose(initial[:, :2], centre[:2]).sum(axis=1) == 1)
-                            & np.isclose(np.abs(initial - centre).max(axis=1), scene.size / 2))
+    middle = np.flatnonzero(
+        np.isclose(initial[:, 2], centre[2])
+        & (np.isclose(initial[:, :2], centre[:2]).sum(axis=1) == 1)
+        & np.isclose(np.abs(initial - centre).max(axis=1), scene.size / 2)
+    )
     assert len(middle) == 4
     outwards = (initial - centre)[middle] / (scene.size / 2)
     assert (dot((pressed - initial)[middle], outwards) > 0.02 * scene.size).all()
@@ -106,8 +109,9 @@ def test_dampers_go_through_all_branches(name):
     """From rest below f1, over the exponential, beyond f2: more than half of the edges meet all of (7)."""
     scene, trajectory, _ = run(name)
     model = Model(scene)
-    force = np.array([edge_forces(model, *frame)
-                      for frame in zip(trajectory.x, trajectory.v, trajectory.a, strict=True)])
+    force = np.array(
+        [edge_forces(model, *frame) for frame in zip(trajectory.x, trajectory.v, trajectory.a, strict=True)]
+    )
     f1, f2 = scene.per_edge("f1"), scene.per_edge("f2")
     between = ((force > f1) & (force < f2)).any(axis=0)
     beyond = (force >= f2).any(axis=0)
@@ -179,8 +183,9 @@ def test_ball():
     assert 0.25 < (let_go - pressed) / (start - pressed) < 0.5
     scene, trajectory, _ = run("ball")
     model = Model(scene)
-    force = np.array([edge_forces(model, *frame)
-                      for frame in zip(trajectory.x, trajectory.v, trajectory.a, strict=True)])
+    force = np.array(
+        [edge_forces(model, *frame) for frame in zip(trajectory.x, trajectory.v, trajectory.a, strict=True)]
+    )
     clay = scene.materials[0]
     assert np.mean((force >= clay.f2).any(axis=0)) > 0.3
     assert np.mean(force[-1] < clay.f1) > 0.9

@@ -14,10 +14,17 @@ FORCE = dict(f1=0.5, f2=2.0, c_max=30.0, c_min=1.0)
 L0, DEPTH = 1.0, 0.2
 
 
-@pytest.mark.parametrize("material", [
-    rheological("linear", 100.0, 2.0, 3.0), rheological("no c1", 100.0, 0.0, 3.0), plastic("plastic", 2.0),
-    rheological_force("force", 100.0, 2.0, **FORCE), plastic_force("plastic force", 300.0, **FORCE),
-], ids=lambda m: m.name)
+@pytest.mark.parametrize(
+    "material",
+    [
+        rheological("linear", 100.0, 2.0, 3.0),
+        rheological("no c1", 100.0, 0.0, 3.0),
+        plastic("plastic", 2.0),
+        rheological_force("force", 100.0, 2.0, **FORCE),
+        plastic_force("plastic force", 300.0, **FORCE),
+    ],
+    ids=lambda m: m.name,
+)
 def test_force_and_ratio_satisfy_the_printed_equations(material, rng):
     model = Model(scene(line(), material, 1e-3, [phase(line(), 1)]))
     k, c1 = material.k, material.c1

@@ -42,14 +42,18 @@ CASES = {
     "2-D viscoelastic, critically damped": at_rest(SQUARE, viscoelastic("gum", 1000.0, 0.65)),
     "2-D ratio faster than the nodes": at_rest(SQUARE, rheological("maxwell", 500.0, 0.0, 1e-3)),
     "2-D two materials": at_rest(
-        SQUARE, [viscoelastic("gum", 3e3, 0.01), plastic("clay", 3.0)], edge_material=half_and_half(SQUARE)),
+        SQUARE, [viscoelastic("gum", 3e3, 0.01), plastic("clay", 3.0)], edge_material=half_and_half(SQUARE)
+    ),
     "irregular 2-D plastic, force-dependent": at_rest(
-        irregular(2, 6), plastic_force("loam", 500.0, f1=0.01, f2=0.05, c_max=5.0, c_min=0.1)),
+        irregular(2, 6), plastic_force("loam", 500.0, f1=0.01, f2=0.05, c_max=5.0, c_min=0.1)
+    ),
     "irregular 3-D rheological, force-dependent": at_rest(
-        irregular(3, 4), rheological_force("loaf", 100.0, 5.0, f1=0.01, f2=0.05, c_max=5.0, c_min=0.1)),
+        irregular(3, 4), rheological_force("loaf", 100.0, 5.0, f1=0.01, f2=0.05, c_max=5.0, c_min=0.1)
+    ),
     "3-D plastic": at_rest(CUBE, plastic("clay", 3.0)),
     "3-D viscoelastic, six tetrahedra": at_rest(
-        mesh.box((4, 4, 3), (SIDE, SIDE, SIDE), 6), viscoelastic("gum", 100.0, 0.1)),
+        mesh.box((4, 4, 3), (SIDE, SIDE, SIDE), 6), viscoelastic("gum", 100.0, 0.1)
+    ),
 }
 
 
@@ -79,8 +83,9 @@ def test_bound_lies_within_a_factor_of_2_below_the_step_that_blows_up(name):
     assert MARGIN * low < 2.96 + 0.05 * MARGIN
 
 
-@pytest.mark.parametrize("name", ["2-D rheological", "2-D two materials", "3-D plastic",
-                                  "irregular 2-D plastic, force-dependent"])
+@pytest.mark.parametrize(
+    "name", ["2-D rheological", "2-D two materials", "3-D plastic", "irregular 2-D plastic, force-dependent"]
+)
 def test_pressing_at_the_bound_is_as_good_as_with_half_the_step(name):
     """Edges turn and forces go through the whole damper law: it must be stable, and is then accurate."""
     problem = CASES[name]
@@ -105,19 +110,26 @@ K, C1, C2, MASS = 300.0, 2.0, 3.0, 0.05
 SIGMA, RHO = 1 / (C1 + C2), C2 / (C1 + C2)
 
 
-@pytest.mark.parametrize(("material", "damping", "stiffness", "reason"), [
-    (viscoelastic("m", K, 0.0), 0, K / MASS, "stiffness"),
-    (viscoelastic("m", K, C1), C1 / MASS, K / MASS, "stiffness"),
-    (viscoelastic("m", K, 50.0), 50 / MASS, K / MASS, "damping"),
-    (plastic("m", C1), C1 / MASS, 0, "damping"),
-    (rheological("m", K, C1, C2), RHO * C1 / MASS + K * SIGMA, RHO * K / MASS, "stiffness"),
-    (rheological("m", K, C1, C2, 0.4, 0.4, 0.4), RHO * C1 / MASS, RHO * K * 0.4 / MASS, "stiffness"),
-    (rheological("m", 20.0, C1, C2), RHO * C1 / MASS + 20 * SIGMA, RHO * 20 / MASS, "stiffness"),
-    (rheological("m", 20.0, C1, C2, a_min=0.3), RHO * C1 / MASS, RHO * 20 * 0.3 / MASS, "damping"),
-    (rheological("m", 20.0, C1, C2, a_max=0.5), RHO * C1 / MASS, RHO * 20 * 0.5 / MASS, "damping"),
-    (rheological("m", K, C1, 1e-3, a_max=0.5), C1 * 1e-3 / (C1 + 1e-3) / MASS + K / (C1 + 1e-3),
-     K * 1e-3 / (C1 + 1e-3) / MASS, "stiffness"),
-])
+@pytest.mark.parametrize(
+    ("material", "damping", "stiffness", "reason"),
+    [
+        (viscoelastic("m", K, 0.0), 0, K / MASS, "stiffness"),
+        (viscoelastic("m", K, C1), C1 / MASS, K / MASS, "stiffness"),
+        (viscoelastic("m", K, 50.0), 50 / MASS, K / MASS, "damping"),
+        (plastic("m", C1), C1 / MASS, 0, "damping"),
+        (rheological("m", K, C1, C2), RHO * C1 / MASS + K * SIGMA, RHO * K / MASS, "stiffness"),
+        (rheological("m", K, C1, C2, 0.4, 0.4, 0.4), RHO * C1 / MASS, RHO * K * 0.4 / MASS, "stiffness"),
+        (rheological("m", 20.0, C1, C2), RHO * C1 / MASS + 20 * SIGMA, RHO * 20 / MASS, "stiffness"),
+        (rheological("m", 20.0, C1, C2, a_min=0.3), RHO * C1 / MASS, RHO * 20 * 0.3 / MASS, "damping"),
+        (rheological("m", 20.0, C1, C2, a_max=0.5), RHO * C1 / MASS, RHO * 20 * 0.5 / MASS, "damping"),
+        (
+            rheological("m", K, C1, 1e-3, a_max=0.5),
+            C1 * 1e-3 / (C1 + 1e-3) / MASS + K / (C1 + 1e-3),
+            K * 1e-3 / (C1 + 1e-3) / MASS,
+            "stiffness",
+        ),
+    ],
+)
 def test_one_edge_has_the_roots_of_its_quadratic(material, damping, stiffness, reason):
     """lambda^2 + (rho c1 / m + k sigma) lambda + rho k / m; while a is held, no k sigma and rho k a / m."""
     fastest = abs(np.roots([1, damping, stiffness])).max()
@@ -169,8 +181,10 @@ def test_the_phase_with_the_most_free_nodes_counts():
     pressed, free = phase(SQUARE, 1, bottom(SQUARE) | top(SQUARE)), phase(SQUARE, 1, bottom(SQUARE))
     clay = plastic("clay", 3.0)
     light = np.where(top(SQUARE), 1e-5, 1e-2)  # only what is held while pressed is light
-    steps = [stability.largest_dt(scene(SQUARE, clay, 1.0, phases, light))[0]
-             for phases in ([pressed], [free], [pressed, free], [free, pressed])]
+    steps = [
+        stability.largest_dt(scene(SQUARE, clay, 1.0, phases, light))[0]
+        for phases in ([pressed], [free], [pressed, free], [free, pressed])
+    ]
     assert steps[0] > 50 * steps[1]
     assert steps[1] == steps[2] == steps[3]
 
@@ -183,10 +197,13 @@ def test_nothing_limits_an_object_that_cannot_move(grid):
     stability.check(problem)
 
 
-@pytest.mark.parametrize(("name", "reason"), [
-    ("2-D ratio faster than the nodes", "stiffness of the material 'maxwell'"),
-    ("2-D rheological", "damping of the material 'dough'"),
-])
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("2-D ratio faster than the nodes", "stiffness of the material 'maxwell'"),
+        ("2-D rheological", "damping of the material 'dough'"),
+    ],
+)
 def test_a_larger_step_is_refused_with_one_that_would_do(name, reason):
     problem = CASES[name]
     bound, _, _ = stability.largest_dt(problem)

@@ -101,8 +101,10 @@ def test_the_damper_is_that_of_the_exact_law_to_a_ten_thousandth(name):
     g, rho, sigma = lookup(lookup.everywhere())
     exact_sigma, exact_rho = solve_damper(m.c1, m.c_max, m.c_min, m.f1, m.f2, g)
     errors = np.abs(rho / exact_rho - 1), np.abs(sigma / exact_sigma - 1)
-    print(f"{name}: largest relative error of rho {errors[0].max():.2g}, of sigma {errors[1].max():.2g}; "
-          f"mean {errors[0].mean():.2g}, {errors[1].mean():.2g}")
+    print(
+        f"{name}: largest relative error of rho {errors[0].max():.2g}, of sigma {errors[1].max():.2g}; "
+        f"mean {errors[0].mean():.2g}, {errors[1].mean():.2g}"
+    )
     assert max(error.max() for error in errors) <= 1e-4
     assert not lookup.faults
 
@@ -113,12 +115,15 @@ def test_outside_the_branch_the_constants_are_exact(name):
     lookup = Lookup(DAMPERS[name])
     threshold = FMT.threshold.lsb * lookup.full
     record = lookup.record
-    for end, g in (("low", np.array([0.0, lookup.g1 / 7, lookup.record["g1"] * threshold - threshold])),
-                   ("high", np.array([lookup.record["g2"] * threshold, lookup.g2 * 1.01, 1.99 * lookup.full]))):
+    for end, g in (
+        ("low", np.array([0.0, lookup.g1 / 7, lookup.record["g1"] * threshold - threshold])),
+        ("high", np.array([lookup.record["g2"] * threshold, lookup.g2 * 1.01, 1.99 * lookup.full])),
+    ):
         _, rho, sigma = lookup(g)
         assert (rho == np.ldexp(FMT.mantissa.lsb * record[f"rho_{end}"], -record[f"rho_{end}_shift"])).all()
-        creep = np.ldexp(FMT.mantissa.lsb * record[f"sigma_{end}"],
-                         -(record[f"sigma_{end}_shift"] + record["creep_shift"]))
+        creep = np.ldexp(
+            FMT.mantissa.lsb * record[f"sigma_{end}"], -(record[f"sigma_{end}_shift"] + record["creep_shift"])
+        )
         np.testing.assert_allclose(sigma, creep * lookup.units.velocity / (2 * lookup.full), rtol=1e-15)
     assert record["g1"] == round(lookup.g1 / threshold) and record["g2"] == round(lookup.g2 / threshold)
 
@@ -152,7 +157,8 @@ def test_octaves_are_exponent_and_mantissa():
 
 
 @pytest.mark.parametrize(
-    ("octaves", "per_octave"), [(0.9, 512), (1, 256), (1.9, 256), (3, 128), (4, 64), (15, 32), (18, 16)])
+    ("octaves", "per_octave"), [(0.9, 512), (1, 256), (1.9, 256), (3, 128), (4, 64), (15, 32), (18, 16)]
+)
 def test_the_finest_segments_that_cover_a_branch_are_taken(octaves, per_octave):
     table = damper_table(FMT, 2.0**-octaves, 1.0, rho=np.ones_like, sigma=np.ones_like)
     assert 2**table.fineness == per_octave

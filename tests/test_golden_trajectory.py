@@ -6,8 +6,13 @@ import pytest
 from golden.trajectory import Trajectory, load
 
 RUN = Trajectory(
-    t=np.array([0.0, 0.1]), x=np.arange(8.0).reshape(2, 2, 2), v=-np.arange(8.0).reshape(2, 2, 2),
-    a=np.array([[0.5], [np.nextafter(0.5, 1)]]), reaction=np.ones((2, 2, 2)), edges=np.array([[0, 1]]))
+    t=np.array([0.0, 0.1]),
+    x=np.arange(8.0).reshape(2, 2, 2),
+    v=-np.arange(8.0).reshape(2, 2, 2),
+    a=np.array([[0.5], [np.nextafter(0.5, 1)]]),
+    reaction=np.ones((2, 2, 2)),
+    edges=np.array([[0, 1]]),
+)
 ARRAYS = ("t", "x", "v", "a", "reaction", "edges")
 
 

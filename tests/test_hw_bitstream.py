@@ -18,12 +18,37 @@ from hw.timing import tools as programs
 from hw.timing.result import read
 
 CELLS = {
-    "ecp5": {"LUT4": 1000, "CCU2C": 300, "TRELLIS_DPR16X4": 5, "TRELLIS_FF": 2106, "MULT18X18D": 23, "DP16KD": 10,
-             "PDPW16KD": 3},
-    "gowin": {"LUT1": 10, "LUT4": 990, "ALU": 600, "RAM16SDP4": 5, "DFF": 2000, "DFFRE": 106, "MULT27X36": 23,
-              "SDPX9B": 12, "pROM": 1},
-    "xilinx": {"LUT6": 990, "LUT2": 610, "RAM32M": 5, "CARRY4": 70, "FDRE": 2100, "FDSE": 6, "DSP48E1": 23,
-               "RAMB36E1": 5, "RAMB18E1": 3},
+    "ecp5": {
+        "LUT4": 1000,
+        "CCU2C": 300,
+        "TRELLIS_DPR16X4": 5,
+        "TRELLIS_FF": 2106,
+        "MULT18X18D": 23,
+        "DP16KD": 10,
+        "PDPW16KD": 3,
+    },
+    "gowin": {
+        "LUT1": 10,
+        "LUT4": 990,
+        "ALU": 600,
+        "RAM16SDP4": 5,
+        "DFF": 2000,
+        "DFFRE": 106,
+        "MULT27X36": 23,
+        "SDPX9B": 12,
+        "pROM": 1,
+    },
+    "xilinx": {
+        "LUT6": 990,
+        "LUT2": 610,
+        "RAM32M": 5,
+        "CARRY4": 70,
+        "FDRE": 2100,
+        "FDSE": 6,
+        "DSP48E1": 23,
+        "RAMB36E1": 5,
+        "RAMB18E1": 3,
+    },
 }
 
 
@@ -50,8 +75,13 @@ def aside(monkeypatch, tmp_path):
 
     monkeypatch.setattr(command.boards, "load", at_100_mhz)
     monkeypatch.setattr(flow, "board_top", lambda board, parameters: (f"// {parameters.lanes}\n", board.clock_mhz))
-    monkeypatch.setattr(tools, "run", lambda folder, tool, *arguments: (folder / "rheogate.cells.json").write_text(
-        json.dumps({"design": {"num_cells_by_type": found["cells"][found["family"]]}})))
+    monkeypatch.setattr(
+        tools,
+        "run",
+        lambda folder, tool, *arguments: (folder / "rheogate.cells.json").write_text(
+            json.dumps({"design": {"num_cells_by_type": found["cells"][found["family"]]}})
+        ),
+    )
     monkeypatch.setattr(tools, "place_and_route", place_and_route)
     monkeypatch.setattr(tools, "pack", pack)
     monkeypatch.setattr(command, "ROOT", tmp_path)
@@ -98,8 +128,9 @@ def test_a_clock_that_is_missed_gives_no_bitstream(run, aside, tmp_path):
     aside["fmax"], aside["called"] = 80.0, []
     code, out, err = run("ulx3s-85f")
     assert (code, aside["called"], out[-1]) == (1, ["place"], "placed, misses its clock")
-    assert err[-1] == ("error: the clock of ulx3s-85f must be at most 80.0 MHz, not 100 MHz: its longest path is "
-                       "2.50 ns too long")
+    assert err[-1] == (
+        "error: the clock of ulx3s-85f must be at most 80.0 MHz, not 100 MHz: its longest path is 2.50 ns too long"
+    )
     assert not (tmp_path / "build" / "ulx3s-85f" / "rheogate.bit").exists()
 
 
@@ -116,8 +147,10 @@ def test_a_circuit_that_does_not_fit_is_not_placed(run, aside, tmp_path):
     aside["cells"]["ecp5"] |= {"DP16KD": 57, "LUT4": 25000}
     code, out, err = run("ulx3s-25f", "--keep")
     assert (code, aside["called"]) == (2, [])
-    assert err[-1] == ("error: the circuit must fit ulx3s-25f, not take 25620 LUTs of 24288, 60 block RAMs of 56: "
-                       "choose fewer lanes, nodes or edges")
+    assert err[-1] == (
+        "error: the circuit must fit ulx3s-25f, not take 25620 LUTs of 24288, 60 block RAMs of 56: "
+        "choose fewer lanes, nodes or edges"
+    )
     assert out[-1] == "does not fit: 25620 LUTs of 24288, 60 block RAMs of 56"
     assert read(tmp_path / "kept" / "ulx3s-25f.json", Build).bitstream_sha256 is None
 
@@ -129,16 +162,23 @@ def test_a_project_for_vivado(run, aside, tmp_path):
     assert out[-2:] == ["project for Vivado, synthesised by Yosys", "project: build/arty-a7-100/rheogate.tcl"]
     script = (folder / "rheogate.tcl").read_text().splitlines()
     assert script[0] == "# For xc7a100tcsg324-1: vivado -mode batch -source rheogate.tcl, in this folder."
-    for line in ("read_verilog rheogate.v", "read_xdc rheogate.xdc", "write_bitstream -force rheogate.bit",
-                 "synth_design -top rheogate_board -part xc7a100tcsg324-1", "if {$slack < 0} {"):
+    for line in (
+        "read_verilog rheogate.v",
+        "read_xdc rheogate.xdc",
+        "write_bitstream -force rheogate.bit",
+        "synth_design -top rheogate_board -part xc7a100tcsg324-1",
+        "if {$slack < 0} {",
+    ):
         assert line in script
     assert {path.name for path in folder.iterdir()} >= {"rheogate.v", "rheogate.xdc"}
 
 
 def test_what_the_tools_do_not_time_is_said(run):
     _, out, _ = run("tang-mega-138k-pro")
-    assert out[-2:] == ["built, multipliers and block RAMs not timed",
-                        "bitstream: build/tang-mega-138k-pro/rheogate.fs"]
+    assert out[-2:] == [
+        "built, multipliers and block RAMs not timed",
+        "bitstream: build/tang-mega-138k-pro/rheogate.fs",
+    ]
 
 
 def test_a_hard_block_slower_than_the_clock(run, aside, monkeypatch):
@@ -148,11 +188,14 @@ def test_a_hard_block_slower_than_the_clock(run, aside, monkeypatch):
     assert (code, err) == (2, [f"error: {message}"])
 
 
-@pytest.mark.parametrize(("options", "message"), [
-    (["--board", "x"], "--board must be arty-a7-100 or tang-mega-138k-pro or ulx3s-25f or ulx3s-85f, not 'x'"),
-    (["--board", "ulx3s-85f", "--lanes", "0"], "--lanes must be a whole number from 1 to {lanes}, not 0"),
-    (["--board", "ulx3s-85f", "--lanes", "1", "--keep"], "--keep must be of the board's own circuit"),
-])
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--board", "x"], "--board must be arty-a7-100 or tang-mega-138k-pro or ulx3s-25f or ulx3s-85f, not 'x'"),
+        (["--board", "ulx3s-85f", "--lanes", "0"], "--lanes must be a whole number from 1 to {lanes}, not 0"),
+        (["--board", "ulx3s-85f", "--lanes", "1", "--keep"], "--keep must be of the board's own circuit"),
+    ],
+)
 def test_impossible_options_are_one_line(options, message, aside, capsys):
     assert main(["bitstream", *options]) == 2
     high = boards.load("ulx3s-85f").parameters().RANGES["lanes"][1]
@@ -163,16 +206,23 @@ def test_what_is_kept_is_published(run, tmp_path):
     run("ulx3s-85f", "--keep")
     header, rule, arty, _, _, ulx3s = result.published(command.kept()).splitlines()
     assert header.count("|") == rule.count("|") == arty.count("|") == ulx3s.count("|")
-    assert arty == ("| arty-a7-100 | xc7a100tcsg324-1 | 4 | 1 | 512 | 4096 | 100 MHz |  |  |  |  |  | not built yet "
-                    "| no |")
-    assert ulx3s == ("| ulx3s-85f | 85k | 4 | 1 | 512 | 4096 | 100 MHz | 104.0 MHz | 1620 (2%) | 2106 (3%) | 23 (15%) "
-                     "| 13 (6%) | built and timed | no |")
+    assert arty == (
+        "| arty-a7-100 | xc7a100tcsg324-1 | 4 | 1 | 512 | 4096 | 100 MHz |  |  |  |  |  | not built yet | no |"
+    )
+    assert ulx3s == (
+        "| ulx3s-85f | 85k | 4 | 1 | 512 | 4096 | 100 MHz | 104.0 MHz | 1620 (2%) | 2106 (3%) | 23 (15%) "
+        "| 13 (6%) | built and timed | no |"
+    )
 
 
-@pytest.mark.parametrize(("name", "required"), [
-    ("ulx3s-85f", "built and timed"), ("ulx3s-25f", "built and timed"),
-    ("tang-mega-138k-pro", "built, multipliers and block RAMs not timed"),
-])
+@pytest.mark.parametrize(
+    ("name", "required"),
+    [
+        ("ulx3s-85f", "built and timed"),
+        ("ulx3s-25f", "built and timed"),
+        ("tang-mega-138k-pro", "built, multipliers and block RAMs not timed"),
+    ],
+)
 def test_bitstreams_that_are_published(name, required, figure):
     kept = command.kept()[name]
     state = kept.state(boards.load(name))
@@ -184,8 +234,9 @@ def test_files_that_are_kept_are_builds_of_the_boards_own_circuits():
     for path in result.KEPT.glob("*.json"):
         build, board = read(path, Build), boards.load(path.stem)
         assert build.board == path.stem
-        assert {size: getattr(build, size) for size in Parameters.SIZES} == \
-               {size: getattr(board.circuit, size) for size in Parameters.SIZES}
+        assert {size: getattr(build, size) for size in Parameters.SIZES} == {
+            size: getattr(board.circuit, size) for size in Parameters.SIZES
+        }
 
 
 @pytest.mark.campaign
@@ -209,10 +260,13 @@ def test_the_tools_are_told_device_and_files(tmp_path, monkeypatch):
     assert called[3].startswith("gowin_pack -d GW5AST-138C --cpu_as_gpio -o rheogate.fs")
 
 
-@pytest.mark.parametrize(("name", "line"), [
-    ("ulx3s-25f", "synth_ecp5 -nowidelut -top rheogate_board -json rheogate.json"),
-    ("ulx3s-85f", "synth_ecp5 -top rheogate_board -json rheogate.json"),
-])
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("ulx3s-25f", "synth_ecp5 -nowidelut -top rheogate_board -json rheogate.json"),
+        ("ulx3s-85f", "synth_ecp5 -top rheogate_board -json rheogate.json"),
+    ],
+)
 def test_a_crowded_device_gets_no_tables_that_must_stand_side_by_side(name, line, tmp_path, monkeypatch):
     cells_json = '{"design": {"num_cells_by_type": {}}}'
     monkeypatch.setattr(tools, "run", lambda folder, *command: (folder / "rheogate.cells.json").write_text(cells_json))
@@ -237,8 +291,11 @@ def test_a_real_bitstream_is_the_same_from_anywhere(monkeypatch):
     board = boards.load("ulx3s-85f")
     clock, mhz = PLLS[board.family].verilog(CLOCK, board.oscillator_mhz, board.clock_mhz)
     monkeypatch.setattr(flow, "board_top", lambda board, parameters: (clock + BLINK, mhz))
-    monkeypatch.setitem(tools.CHAINS, "ecp5", tools.CHAINS["ecp5"]._replace(
-        synthesis="synth_ecp5 -top rheogate_board -json rheogate.json"))
+    monkeypatch.setitem(
+        tools.CHAINS,
+        "ecp5",
+        tools.CHAINS["ecp5"]._replace(synthesis="synth_ecp5 -top rheogate_board -json rheogate.json"),
+    )
     made = []
     for number in range(2):
         folder = command.OUT / f"test.{os.getpid()}.{number}"

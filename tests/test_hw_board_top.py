@@ -34,18 +34,30 @@ def test_every_boards_pins_are_the_ports_of_its_top(name, linked):
     board = boards.load(name)
     text = top(board, linked)
     assert pins.ports(text, BOARD) == {
-        "clk": "in", "rx": "in", "tx": "out", "reset": "in", "busy": "out", "locked": "out",
+        "clk": "in",
+        "rx": "in",
+        "tx": "out",
+        "reset": "in",
+        "busy": "out",
+        "locked": "out",
     }
     pins.check(board.ports, text, BOARD)
 
 
-@pytest.mark.parametrize(("change", "message"), [
-    (lambda ports: ports.pop("tx"), f"pins.tx must be given: {BOARD} has that port"),
-    (lambda ports: ports.update(ready=Pin("A1", "LVCMOS33")),
-     f"pins.ready must not be there: the ports of {BOARD} are busy, clk, locked, reset, rx, tx"),
-    (lambda ports: ports.update(rx=Pin("A1", "LVCMOS33", drive=4)),
-     "pins.rx.drive must be of an output, which rx is not"),
-])
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda ports: ports.pop("tx"), f"pins.tx must be given: {BOARD} has that port"),
+        (
+            lambda ports: ports.update(ready=Pin("A1", "LVCMOS33")),
+            f"pins.ready must not be there: the ports of {BOARD} are busy, clk, locked, reset, rx, tx",
+        ),
+        (
+            lambda ports: ports.update(rx=Pin("A1", "LVCMOS33", drive=4)),
+            "pins.rx.drive must be of an output, which rx is not",
+        ),
+    ],
+)
 def test_pins_that_are_not_the_ports_are_refused(change, message, linked):
     board = boards.load("ulx3s-85f")
     ports = dict(board.ports)
@@ -70,11 +82,17 @@ def test_lights_and_buttons_may_be_active_low(linked):
     assert "= ~ reset;" in low and "~ reset" not in high
 
 
-@pytest.mark.parametrize(("key", "value", "message"), [
-    ("clock_mhz", 137.3, "clock_mhz must be a frequency that a PLL of ecp5 makes of 25 MHz, as 135 or 137.5, "
-     "not 137.3"),
-    ("baud", 9600, "baud must be 115200 to 3000000, not 9600"),
-])
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        (
+            "clock_mhz",
+            137.3,
+            "clock_mhz must be a frequency that a PLL of ecp5 makes of 25 MHz, as 135 or 137.5, not 137.3",
+        ),
+        ("baud", 9600, "baud must be 115200 to 3000000, not 9600"),
+    ],
+)
 def test_a_clock_or_a_rate_that_cannot_be_is_refused(key, value, message, monkeypatch):
     monkeypatch.setattr(board_top, "emit", lambda parameters: ("", core_to_ask(parameters)))
     board = copy.deepcopy(boards.load("ulx3s-85f"))
@@ -116,8 +134,11 @@ def written(name):
 
 def test_constraints_for_nextpnr_ecp5():
     lines = written("ulx3s-85f")
-    assert lines[:3] == ['FREQUENCY PORT "clk" 25 MHZ;', 'LOCATE COMP "clk" SITE "G2";',
-                         'IOBUF PORT "clk" IO_TYPE=LVCMOS33 PULLMODE=NONE;']
+    assert lines[:3] == [
+        'FREQUENCY PORT "clk" 25 MHZ;',
+        'LOCATE COMP "clk" SITE "G2";',
+        'IOBUF PORT "clk" IO_TYPE=LVCMOS33 PULLMODE=NONE;',
+    ]
     assert 'IOBUF PORT "tx" IO_TYPE=LVCMOS33 PULLMODE=UP DRIVE=4;' in lines and len(lines) == 13
 
 
@@ -129,8 +150,10 @@ def test_constraints_for_gowin():
 
 def test_constraints_for_vivado():
     lines = written("arty-a7-100")
-    assert lines[:2] == ["create_clock -period 10.000 [get_ports clk]",
-                         "set_property -dict { PACKAGE_PIN E3 IOSTANDARD LVCMOS33 } [get_ports clk]"]
+    assert lines[:2] == [
+        "create_clock -period 10.000 [get_ports clk]",
+        "set_property -dict { PACKAGE_PIN E3 IOSTANDARD LVCMOS33 } [get_ports clk]",
+    ]
     board = boards.load("arty-a7-100")
     board.pins.rx.pull, board.pins.tx.drive = "up", 8
     text = pins.xdc(board)

@@ -92,27 +92,44 @@ def test_a_key_that_is_missing_or_of_another_type(path, refused):
     refused(text_of(document), f"{path} must be {LISTED[type(value)]}, not a list")
 
 
-@pytest.mark.parametrize("old, new, message", [
-    ('family = "ecp5"', 'family = "ecp4"', "family must be ecp5 or gowin or xilinx, not 'ecp4'"),
-    ('family = "ecp5"', "family = 5", "family must be text, not 5"),
-    ('device = "85k"', 'device = "86k"', "device must be 12k or 25k or 45k or 85k, not '86k'"),
-    ("grade = 6", "grade = 0", "grade must be a whole number of at least 1, not 0"),
-    ("target_mhz = 150.0", "target_mhz = 0.0", "target_mhz must be a number above 0, not 0.0"),
-    ("target_mhz = 150.0", "target_mhz = inf", "target_mhz must be a finite number, not inf"),
-    ("block_rams = 208", 'block_rams = "208"', "holds.block_rams must be a whole number, not '208'"),
-    ("multiplier = 170.0", "multiplier = true", "limits_mhz.multiplier must be a number, not true"),
-    ('pull = "down"', 'pull = "off"', "pins.reset.pull must be none or up or down, not 'off'"),
-    ('pin = "M1"', 'pin = "G2"', "pins.rx.pin must be another one than that of clk, not 'G2'"),
-    ("locked =", "ready =", "pins.ready must not be there: the keys known here are clk, rx, tx, reset, busy, locked"),
-    ('family = "ecp5"\ndevice = "85k"', 'family = "xilinx"\ndevice = "xc7a100tcsg324-1"',
-     "limits_mhz must be given for ecp5 alone"),
-    ("lanes = 4", "lanes = 99", "circuit.lanes must be a whole number from 1 to 6, not 99"),
-    ("lanes = 4", "lanes = 4.5", "circuit.lanes must be a whole number, not 4.5"),
-    ("grade = 6", "grade = 6\nspeed = 6", "speed must not be there: the keys known here are family, device, package, "
-     "grade, target_mhz, oscillator_mhz, clock_mhz, baud, loader, pins, holds, circuit, limits_mhz, crowded"),
-    ("luts =", "slices = 1\nluts =", "holds.slices must not be there: the keys known here are luts, ffs, multipliers, "
-     "block_rams"),
-])
+@pytest.mark.parametrize(
+    "old, new, message",
+    [
+        ('family = "ecp5"', 'family = "ecp4"', "family must be ecp5 or gowin or xilinx, not 'ecp4'"),
+        ('family = "ecp5"', "family = 5", "family must be text, not 5"),
+        ('device = "85k"', 'device = "86k"', "device must be 12k or 25k or 45k or 85k, not '86k'"),
+        ("grade = 6", "grade = 0", "grade must be a whole number of at least 1, not 0"),
+        ("target_mhz = 150.0", "target_mhz = 0.0", "target_mhz must be a number above 0, not 0.0"),
+        ("target_mhz = 150.0", "target_mhz = inf", "target_mhz must be a finite number, not inf"),
+        ("block_rams = 208", 'block_rams = "208"', "holds.block_rams must be a whole number, not '208'"),
+        ("multiplier = 170.0", "multiplier = true", "limits_mhz.multiplier must be a number, not true"),
+        ('pull = "down"', 'pull = "off"', "pins.reset.pull must be none or up or down, not 'off'"),
+        ('pin = "M1"', 'pin = "G2"', "pins.rx.pin must be another one than that of clk, not 'G2'"),
+        (
+            "locked =",
+            "ready =",
+            "pins.ready must not be there: the keys known here are clk, rx, tx, reset, busy, locked",
+        ),
+        (
+            'family = "ecp5"\ndevice = "85k"',
+            'family = "xilinx"\ndevice = "xc7a100tcsg324-1"',
+            "limits_mhz must be given for ecp5 alone",
+        ),
+        ("lanes = 4", "lanes = 99", "circuit.lanes must be a whole number from 1 to 6, not 99"),
+        ("lanes = 4", "lanes = 4.5", "circuit.lanes must be a whole number, not 4.5"),
+        (
+            "grade = 6",
+            "grade = 6\nspeed = 6",
+            "speed must not be there: the keys known here are family, device, package, "
+            "grade, target_mhz, oscillator_mhz, clock_mhz, baud, loader, pins, holds, circuit, limits_mhz, crowded",
+        ),
+        (
+            "luts =",
+            "slices = 1\nluts =",
+            "holds.slices must not be there: the keys known here are luts, ffs, multipliers, block_rams",
+        ),
+    ],
+)
 def test_a_value_that_is_wrong(old, new, message, refused):
     assert TEXT.count(old) == 1
     high = Parameters.RANGES["lanes"][1]

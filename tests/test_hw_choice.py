@@ -22,8 +22,9 @@ class Choice(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         lines = DelayLines(m)
-        m.d.comb += self.o.eq(choose(
-            m, lines, self.words, self.index, cycles=self._cycles, name="chosen", ahead=self._ahead))
+        m.d.comb += self.o.eq(
+            choose(m, lines, self.words, self.index, cycles=self._cycles, name="chosen", ahead=self._ahead)
+        )
         lines.build()
         return m
 
@@ -50,5 +51,7 @@ def test_a_choice_a_cycle(count, cycles, ahead, rng):
 
 def test_more_words_than_cycles_can_tell_apart_are_refused():
     words = [Signal(4) for _ in range(WAYS + 1)]
-    refused(lambda: choose(Module(), None, words, Signal(3), cycles=1, name="chosen"),
-            "words must be at most 4 to choose from in 1 cycles, not 5")
+    refused(
+        lambda: choose(Module(), None, words, Signal(3), cycles=1, name="chosen"),
+        "words must be at most 4 to choose from in 1 cycles, not 5",
+    )

@@ -95,13 +95,17 @@ def edited_manifest(out):
     (out / MANIFEST).write_text(manifest.dump(contents | {"map_version": 99}))
 
 
-@pytest.mark.parametrize("disturb", [
-    lambda out: (out / VERILOG).unlink(),
-    lambda out: (out / VERILOG).write_text((out / VERILOG).read_text() + "// mine"),
-    lambda out: (out / MANIFEST).unlink(),
-    lambda out: (out / MANIFEST).write_text((out / MANIFEST).read_text()[:1000]),
-    edited_manifest,
-], ids=["no Verilog", "other Verilog", "no manifest", "half a manifest", "another manifest"])
+@pytest.mark.parametrize(
+    "disturb",
+    [
+        lambda out: (out / VERILOG).unlink(),
+        lambda out: (out / VERILOG).write_text((out / VERILOG).read_text() + "// mine"),
+        lambda out: (out / MANIFEST).unlink(),
+        lambda out: (out / MANIFEST).write_text((out / MANIFEST).read_text()[:1000]),
+        edited_manifest,
+    ],
+    ids=["no Verilog", "other Verilog", "no manifest", "half a manifest", "another manifest"],
+)
 def test_what_was_disturbed_is_written_again(disturb, emitted, out):
     run(out)
     expected = {path.name: path.read_bytes() for path in out.iterdir()}
@@ -151,9 +155,12 @@ def test_other_sources_write_again(emitted, out, monkeypatch, tmp_path):
 def test_another_tools_file_is_not_replaced(name, emitted, out, capsys):
     out.mkdir(parents=True)
     (out / name).write_text('{"design": "somebody else"}')
-    refused(["verilog", *SMALL, "--out", str(out)],
-            f"--out must be a folder without another tool's {name}, not {out}: choose another, or add --force to "
-            "replace it", capsys)
+    refused(
+        ["verilog", *SMALL, "--out", str(out)],
+        f"--out must be a folder without another tool's {name}, not {out}: choose another, or add --force to "
+        "replace it",
+        capsys,
+    )
     assert [path.name for path in out.iterdir()] == [name] and not emitted
     assert run(out, "--force") == 0
     assert {path.name for path in out.iterdir()} == {VERILOG, MANIFEST} and len(emitted) == 1
@@ -179,7 +186,9 @@ def test_nothing_half_written(emitted, out, monkeypatch):
         return fail() if target.name == MANIFEST else replace(source, target)
 
     for module, name, failing in (
-        (build, "emit", fail), (manifest, "manifest", fail), (files.os, "replace", fail),
+        (build, "emit", fail),
+        (manifest, "manifest", fail),
+        (files.os, "replace", fail),
         (files.os, "replace", replace_but_the_manifest),
     ):
         with monkeypatch.context() as patch:
@@ -198,8 +207,11 @@ def test_a_file_is_no_folder(emitted, tmp_path, capsys):
     file.write_text("")
     refused(["verilog", "--out", str(file)], f"--out must be a folder, not the file {file}", capsys)
     below = file / "folder"
-    refused(["verilog", "--out", str(below)],
-            f"--out must be a folder that can be written, not {below}: Not a directory", capsys)
+    refused(
+        ["verilog", "--out", str(below)],
+        f"--out must be a folder that can be written, not {below}: Not a directory",
+        capsys,
+    )
     assert not emitted
 
 
@@ -261,8 +273,10 @@ def test_lint_judges_what_it_writes(emitted, out, monkeypatch, capsys):
     monkeypatch.setattr(lint, "lint", judge)
     arguments = ["lint", *SMALL, "--family", "ecp5", "--out", str(out)]
     assert main(arguments) == 0
-    assert said(capsys) == ([f"{out / VERILOG}: {build.describe(emitted[0])}",
-                             "0 warnings beyond those that hw/waivers.vlt excuses"], [])
+    assert said(capsys) == (
+        [f"{out / VERILOG}: {build.describe(emitted[0])}", "0 warnings beyond those that hw/waivers.vlt excuses"],
+        [],
+    )
     warnings += ["%Warning-LATCH: rheogate.v:1:1: a latch", "%Warning-LATCH: rheogate.v:2:1: another"]
     assert main(arguments) == 1
     lines, errors = said(capsys)
@@ -288,5 +302,7 @@ def test_lint_passes_on_what_breaks_verilator(tmp_path, monkeypatch):
 def test_it_is_a_module():
     done = subprocess.run([sys.executable, "-m", "hw"], cwd=ROOT, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == ("error: the following arguments are required: "
-                           "verilog|lint|map|timing|bitstream|flash|doctor|docs (see python -m hw --help)\n")
+    assert done.stderr == (
+        "error: the following arguments are required: "
+        "verilog|lint|map|timing|bitstream|flash|doctor|docs (see python -m hw --help)\n"
+    )

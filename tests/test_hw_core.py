@@ -73,8 +73,9 @@ class Host:
 
 
 def circuit(image, lanes, **kwargs):
-    room = dict(nodes=image.nodes, edges=len(image.edges), materials=len(image.materials),
-                tables=len(image.damper["rho_value"]))
+    room = dict(
+        nodes=image.nodes, edges=len(image.edges), materials=len(image.materials), tables=len(image.damper["rho_value"])
+    )
     parameters = Parameters(lanes=lanes, **room | kwargs)
     return Core(parameters), Program(image, parameters), Machine(image)
 
@@ -87,7 +88,8 @@ def loading(program):
 
 @pytest.mark.parametrize(
     ("lanes", "updates", "axes", "press", "hold"),
-    [(1, 1, 3, [1, 2], [1]), (2, 1, 3, [1], [1]), (2, 2, 3, [1], [1]), (1, 1, 1, [1, 2], [1]), (2, 2, 1, [1], [1])])
+    [(1, 1, 3, [1, 2], [1]), (2, 1, 3, [1], [1]), (2, 2, 3, [1], [1]), (1, 1, 1, [1, 2], [1]), (2, 2, 1, [1], [1])],
+)
 def test_a_pressed_block(lanes, updates, axes, press, hold, rng):
     """In runs of one step and of more; a new phase; counters; and the door is shut while it runs."""
     mesh = irregular((3, 2), rng)
@@ -154,5 +156,6 @@ def test_random_integers_and_their_faults(rng):
 def test_an_edge_whose_words_come_back_too_late_is_refused():
     """Late for its next stage, or for the host who reads them after the last."""
     core_to_ask(Parameters(cost=Cost(less=10)))
-    refused(lambda: Core(Parameters(cost=Cost(less=11))),
-            "the edge's base must be written within 87 cycles, not after 88")
+    refused(
+        lambda: Core(Parameters(cost=Cost(less=11))), "the edge's base must be written within 87 cycles, not after 88"
+    )

@@ -28,9 +28,18 @@ class Tapped(wiring.Component):
 
 @pytest.mark.parametrize("wire", [False, True])
 @pytest.mark.parametrize("reset", [False, True])
-@pytest.mark.parametrize("taps", [
-    (0, 1, 2), (RING_LEAST - 1,), (RING_LEAST,), (RING_MOST,), (RING_MOST + 1,), (40, 3, 12, 41, 61), (2 * RING_MOST,),
-])
+@pytest.mark.parametrize(
+    "taps",
+    [
+        (0, 1, 2),
+        (RING_LEAST - 1,),
+        (RING_LEAST,),
+        (RING_MOST,),
+        (RING_MOST + 1,),
+        (40, 3, 12, 41, 61),
+        (2 * RING_MOST,),
+    ],
+)
 def test_taps(taps, reset, wire, rng):
     values = [int(v) for v in rng.integers(-64, 64, 150)]
     dut = Tapped(taps, reset, wire)

@@ -105,8 +105,10 @@ def test_serial_ports_and_whether_they_may_be_used(machine, capsys, monkeypatch,
     monkeypatch.setattr(list_ports, "comports", lambda: ports)
     code, out = lines(capsys)
     assert code == 0 and f"ok   serial port {mine}  FT231X" in out
-    assert (f"--   serial port {not_mine}  FT231X, not to be read and written by you  join its group: "
-            "sudo usermod -aG dialout $USER, and log in again") in out
+    assert (
+        f"--   serial port {not_mine}  FT231X, not to be read and written by you  join its group: "
+        "sudo usermod -aG dialout $USER, and log in again"
+    ) in out
 
 
 def test_without_pyserial_the_package_is_named(machine, capsys, monkeypatch):

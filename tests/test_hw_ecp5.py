@@ -89,8 +89,13 @@ def twins(asked):
     inputs = [{name: np.array(values[:CYCLES]) for name, values in pair.items()} for pair in inputs]
     inputs += [traffic(width, depth, rng) for width, depth, _ in of_words]
     of_places = sorted(asked.shifts, key=str)
-    inputs += [{"i": rng.integers(1 << shape.width, size=CYCLES) - (shape.signed << shape.width - 1),
-                "times": rng.integers(1 << bits, size=CYCLES)} for shape, bits, _, _ in of_places]
+    inputs += [
+        {
+            "i": rng.integers(1 << shape.width, size=CYCLES) - (shape.signed << shape.width - 1),
+            "times": rng.integers(1 << bits, size=CYCLES),
+        }
+        for shape, bits, _, _ in of_places
+    ]
     blocks = [Multiplier(a, b, registers=registers, apart=apart) for a, b, registers, apart in of_two]
     blocks += [BlockRam(width=width, depth=depth, init=init) for width, depth, init in of_words]
     blocks += [ShiftStage(*stage, left=left) for *stage, left in of_places]
@@ -138,21 +143,42 @@ def placed(block):
     return re.findall(r"^  (MULT18X18D|PDPW16KD|DP16KD) #", convert(block, "block", FAMILIES["ecp5"]), re.MULTILINE)
 
 
-@pytest.mark.parametrize(("width", "depth", "blocks"), [
-    (36, 16, ["PDPW16KD"]), (8, 512, ["PDPW16KD"]), (36, 512, ["PDPW16KD"]), (37, 512, ["PDPW16KD"] * 2),
-    (18, 513, ["DP16KD"]), (36, 1024, ["DP16KD"] * 2), (36, 2048, ["DP16KD"] * 4), (33, 2048, ["DP16KD"] * 4),
-    (36, 4096, ["DP16KD"] * 9), (2, 8192, ["DP16KD"]), (3, 16384, ["DP16KD"] * 3), (1, 16385, []),
-])
+@pytest.mark.parametrize(
+    ("width", "depth", "blocks"),
+    [
+        (36, 16, ["PDPW16KD"]),
+        (8, 512, ["PDPW16KD"]),
+        (36, 512, ["PDPW16KD"]),
+        (37, 512, ["PDPW16KD"] * 2),
+        (18, 513, ["DP16KD"]),
+        (36, 1024, ["DP16KD"] * 2),
+        (36, 2048, ["DP16KD"] * 4),
+        (33, 2048, ["DP16KD"] * 4),
+        (36, 4096, ["DP16KD"] * 9),
+        (2, 8192, ["DP16KD"]),
+        (3, 16384, ["DP16KD"] * 3),
+        (1, 16385, []),
+    ],
+)
 def test_a_memory_takes_as_few_blocks_as_hold_it(width, depth, blocks):
     assert placed(BlockRam(width=width, depth=depth)) == blocks
     if blocks:
         assert len(blocks) == min(math.ceil(width / bits) for bits, words in BLOCKS if words >= depth)
 
 
-@pytest.mark.parametrize(("width", "registers", "apart", "blocks"), [
-    (18, 2, False, 1), (18, 3, False, 1), (18, 4, False, 0), (19, 3, False, 0), (1, 3, False, 1),
-    (18, 2, True, 1), (18, 4, True, 1), (18, 5, True, 0),
-])
+@pytest.mark.parametrize(
+    ("width", "registers", "apart", "blocks"),
+    [
+        (18, 2, False, 1),
+        (18, 3, False, 1),
+        (18, 4, False, 0),
+        (19, 3, False, 0),
+        (1, 3, False, 1),
+        (18, 2, True, 1),
+        (18, 4, True, 1),
+        (18, 5, True, 0),
+    ],
+)
 def test_a_multiplier_that_does_not_fit_stays_generic(width, registers, apart, blocks):
     for a, b in ((width, 18), (18, width)):
         assert len(placed(Multiplier(signed(a), unsigned(b), registers=registers, apart=apart))) == blocks

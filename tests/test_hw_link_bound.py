@@ -40,8 +40,10 @@ COMMANDS = {
     "each for itself": ([read(X)] * ITEMS_MOST, Work(ITEMS_MOST, read=ITEMS_MOST)),
     "as many written as a payload holds": ([write(X, *range(16), *range(85))], Work(1, written=101)),
     "long checks": ([head(Kind.CHECK, X, COUNT_MOST)] * 3, Work(3, checked=3 * COUNT_MOST, checks=3)),
-    "the longest": ([head(Kind.CHECK, X, COUNT_MOST)] * ITEMS_MOST + [read(X, 0)] * 2,
-                    Work(ITEMS_MOST + 2, checked=ITEMS_MOST * COUNT_MOST, checks=ITEMS_MOST)),
+    "the longest": (
+        [head(Kind.CHECK, X, COUNT_MOST)] * ITEMS_MOST + [read(X, 0)] * 2,
+        Work(ITEMS_MOST + 2, checked=ITEMS_MOST * COUNT_MOST, checks=ITEMS_MOST),
+    ),
     "all of it": ([read(X, 5), write(X, 1, 2, 3), head(Kind.CHECK, X, 9)] * 2, Work(6, 10, 6, 18, 2)),
 }
 

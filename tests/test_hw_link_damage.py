@@ -66,8 +66,10 @@ KINDS = flips, drops, inserts, bursts, truncations, splices, noise
 
 def damaged(r, seq):
     """(a command that would write, made into something that is no frame, and a zero; what has to be counted)"""
-    frame, other = (access(seq, *(write(X + n, r.getrandbits(36) | 1) for n in range(r.randint(1, WORDS)))).packed(KEY)
-                    for _ in range(2))
+    frame, other = (
+        access(seq, *(write(X + n, r.getrandbits(36) | 1) for n in range(r.randint(1, WORDS)))).packed(KEY)
+        for _ in range(2)
+    )
     while True:
         bad = bytes(r.choice(KINDS)(r, frame, other)) + b"\0"
         counted = [told(part) for part in bad.split(b"\0") if part]

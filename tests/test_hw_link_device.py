@@ -67,22 +67,27 @@ def test_what_is_written_is_read_and_checked(rng):
 def test_a_refused_word_is_told_and_the_others_done():
     load = Map(SMALL).address(Region.NODE, "load_x", 0)
     _, wrote, got = exchanged(
-        hello(), access(1, write(control(Control.MAGIC), 5), write(load, 8)),
-        access(2, read(load), read(control(Control.REFUSED))))
+        hello(),
+        access(1, write(control(Control.MAGIC), 5), write(load, 8)),
+        access(2, read(load), read(control(Control.REFUSED))),
+    )
     assert (wrote.status, got.status, items(got.payload)) == (Status.REFUSED, Status.DONE, [0, 8, 1])
 
 
 X = Map(SMALL).address(Region.NODE, "x_x", 0)
 
 
-@pytest.mark.parametrize(("frame", "status"), [
-    (access(1, write(X, 5), read(X)[:-1]), Status.MALFORMED),
-    (access(1, write(X, 5), write(X, 6, 7)[:-1]), Status.MALFORMED),
-    (access(1, write(X, 5), write(X, 6, 7)[:-ITEM_BYTES]), Status.MALFORMED),
-    (access(1, write(X, 5), head(3, X, 1)), Status.MALFORMED),
-    (access(1, write(X, 5), read(X, 16), *[read(X, 14)] * 6, read(X, 1)), Status.MALFORMED),
-    (access(1, write(X, 5), operation=9), Status.UNKNOWN),
-])
+@pytest.mark.parametrize(
+    ("frame", "status"),
+    [
+        (access(1, write(X, 5), read(X)[:-1]), Status.MALFORMED),
+        (access(1, write(X, 5), write(X, 6, 7)[:-1]), Status.MALFORMED),
+        (access(1, write(X, 5), write(X, 6, 7)[:-ITEM_BYTES]), Status.MALFORMED),
+        (access(1, write(X, 5), head(3, X, 1)), Status.MALFORMED),
+        (access(1, write(X, 5), read(X, 16), *[read(X, 14)] * 6, read(X, 1)), Status.MALFORMED),
+        (access(1, write(X, 5), operation=9), Status.UNKNOWN),
+    ],
+)
 def test_a_payload_that_is_not_what_it_should_be_does_nothing(frame, status):
     _, answer, after = exchanged(hello(), frame, access(2, read(X)))
     assert answer == Frame(frame.type | ANSWER, 1, status, item(0))

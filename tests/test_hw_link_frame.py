@@ -23,12 +23,15 @@ def test_the_wire_format_is_pinned():
     assert Frame(2, 3, payload=b"\0a").packed(KEY).hex() == "00030203010202010661d1114fe500"
 
 
-@pytest.mark.parametrize(("coded", "kind"), [
-    (b"\5abc", "cobs_errors"),
-    (b"\2a", "length_errors"),
-    (Frame(2, 0, payload=b"payload").packed(KEY)[1:-1][:-1] + b"\1", "crc_errors"),
-    (Frame(2, 0).packed(bytes(8))[1:-1], "crc_errors"),
-])
+@pytest.mark.parametrize(
+    ("coded", "kind"),
+    [
+        (b"\5abc", "cobs_errors"),
+        (b"\2a", "length_errors"),
+        (Frame(2, 0, payload=b"payload").packed(KEY)[1:-1][:-1] + b"\1", "crc_errors"),
+        (Frame(2, 0).packed(bytes(8))[1:-1], "crc_errors"),
+    ],
+)
 def test_what_is_no_frame_is_refused(coded, kind):
     with pytest.raises(FrameError, match=f"^{kind}$") as raised:
         unpacked(coded, KEY)

@@ -102,9 +102,13 @@ def test_nothing_of_a_damaged_frame_arrives_and_its_kind_is_counted(rng):
     assert set(kinds) == {"cobs_errors", "length_errors", "crc_errors"} and len(cases) > DAMAGES // 2
 
 
-@pytest.mark.parametrize(("port", "counted"), [
-    ("error", {"line_errors": 1}), ("broken", {"line_errors": 1, "breaks": 1}),
-])
+@pytest.mark.parametrize(
+    ("port", "counted"),
+    [
+        ("error", {"line_errors": 1}),
+        ("broken", {"line_errors": 1, "breaks": 1}),
+    ],
+)
 def test_a_frame_with_a_broken_byte_is_dropped_and_the_next_one_accepted(port, counted):
     dut, seen = FrameReceiver(KEY), Counter()
     bad, good = (Frame(2, n, payload=b"payload").packed(KEY) for n in range(2))

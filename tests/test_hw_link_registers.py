@@ -50,8 +50,11 @@ def test_what_happens_to_frames_is_counted():
 def test_what_is_no_register_or_no_count_is_refused():
     line = Line()
     _, beyond, large, after = line.exchange(
-        hello(), access(1, read(register(len(Link)))), access(2, write(register(Link.WATCHDOG), 1 << 32)),
-        access(3, ALL))
+        hello(),
+        access(1, read(register(len(Link)))),
+        access(2, write(register(Link.WATCHDOG), 1 << 32)),
+        access(3, ALL),
+    )
     line.close()
     assert (beyond.status, large.status) == (Status.REFUSED, Status.REFUSED) and not counted(after)
     assert items(beyond.payload) == [0, 0]
@@ -69,7 +72,8 @@ def test_a_segment_too_long_stays_in_its_word():
     line = Line()
     place = join(1, 30, 5, 0)
     _, wrote, got = line.exchange(
-        hello(), access(1, write(place, 11, 12, 13, across=True)), access(2, read(join(1, 0, 5, 0))))
+        hello(), access(1, write(place, 11, 12, 13, across=True)), access(2, read(join(1, 0, 5, 0)))
+    )
     line.close()
     assert wrote.status == Status.REFUSED and items(got.payload) == [0, 13]
 
@@ -90,8 +94,15 @@ def test_a_run_ends_when_the_host_is_silent(rng):
     line.send(b"", 3 * silence)
     names = [read(join(1, word, 0, 0), len(model.x)) for word in range(3)]
     (answer,) = line.exchange(
-        access(seq, read(control(Control.BUSY)), read(control(Control.STEPS_DONE)), read(control(Control.CYCLES)),
-               read(register(Link.HALTS)), *names))
+        access(
+            seq,
+            read(control(Control.BUSY)),
+            read(control(Control.STEPS_DONE)),
+            read(control(Control.CYCLES)),
+            read(register(Link.HALTS)),
+            *names,
+        )
+    )
     line.close()
     busy, done, cycles, halts, *x = items(answer.payload)[1:]
     assert not busy and halts == 1 and 0 < done < steps

@@ -9,25 +9,39 @@ from hw_objects import refused, simulate
 from hw.link.uart import BAUD_LEAST, BAUD_MOST, LEAST_CYCLES, Receiver, Transmitter, cycles_per_bit
 
 
-@pytest.mark.parametrize(("clock_hz", "baud", "cycles"), [
-    (125e6, 1_000_000, 125), (125e6, 3_000_000, 42), (25e6, 115_200, 217), (24e6, 3_000_000, LEAST_CYCLES),
-])
+@pytest.mark.parametrize(
+    ("clock_hz", "baud", "cycles"),
+    [
+        (125e6, 1_000_000, 125),
+        (125e6, 3_000_000, 42),
+        (25e6, 115_200, 217),
+        (24e6, 3_000_000, LEAST_CYCLES),
+    ],
+)
 def test_a_bit_has_a_whole_number_of_cycles(clock_hz, baud, cycles):
     assert cycles_per_bit(clock_hz, baud) == cycles
 
 
-@pytest.mark.parametrize(("clock_hz", "baud", "message"), [
-    (125e6, BAUD_LEAST - 1, "baud must be 115200 to 3000000, not 115199"),
-    (125e6, BAUD_MOST + 1, "baud must be 115200 to 3000000, not 3000001"),
-    (20e6, 3_000_000, "baud must be at most 2500000 with a clock of 20 MHz, not 3000000"),
-    (25e6, 2_950_000, None),
-    (25e6, 3_000_000, "baud must be a rate that a clock of 25 MHz meets within 1.5%, not 3000000: 8 cycles a bit are "
-                      "+4.2% off"),
-])
+@pytest.mark.parametrize(
+    ("clock_hz", "baud", "message"),
+    [
+        (125e6, BAUD_LEAST - 1, "baud must be 115200 to 3000000, not 115199"),
+        (125e6, BAUD_MOST + 1, "baud must be 115200 to 3000000, not 3000001"),
+        (20e6, 3_000_000, "baud must be at most 2500000 with a clock of 20 MHz, not 3000000"),
+        (25e6, 2_950_000, None),
+        (
+            25e6,
+            3_000_000,
+            "baud must be a rate that a clock of 25 MHz meets within 1.5%, not 3000000: 8 cycles a bit are +4.2% off",
+        ),
+    ],
+)
 def test_a_rate_that_cannot_be_met_is_refused(clock_hz, baud, message):
     if message is None:
-        message = (f"baud must be a rate that a clock of 25 MHz meets within 1.5%, not {baud}: 8 cycles a bit are "
-                   f"{25e6 / 8 / baud - 1:+.1%} off")
+        message = (
+            f"baud must be a rate that a clock of 25 MHz meets within 1.5%, not {baud}: 8 cycles a bit are "
+            f"{25e6 / 8 / baud - 1:+.1%} off"
+        )
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         cycles_per_bit(clock_hz, baud)
 
@@ -82,7 +96,8 @@ def test_how_much_a_rate_may_be_off(cycles, rng, figure):
 
     def most(sign):
         steps = itertools.takewhile(
-            lambda n: received(cycles, sampled(bits, cycles * (1 + sign * n / 200))) == sent, range(1, 21))
+            lambda n: received(cycles, sampled(bits, cycles * (1 + sign * n / 200))) == sent, range(1, 21)
+        )
         return max(steps, default=0) / 2
 
     figures = most(-1), most(1)
@@ -127,5 +142,3 @@ def test_a_transmitter_sends_what_a_line_carries(cycles, rng):
     simulate(dut, bench)
     assert received(cycles, levels) == sent
     assert levels[: 2 * cycles] == [0] * (2 * cycles)  # a start bit at once, and the first bit of 0x00
-
-

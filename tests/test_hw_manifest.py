@@ -42,8 +42,18 @@ def test_hashes(contents):
 
 def test_parameters(contents):
     assert contents["parameters"] == {
-        "lanes": 3, "updates": 1, "nodes": 20, "edges": 31, "rows": 11, "materials": 5, "tables": 2, "axes": 3,
-        "operand": 18, "state": 36, "family": "generic"}
+        "lanes": 3,
+        "updates": 1,
+        "nodes": 20,
+        "edges": 31,
+        "rows": 11,
+        "materials": 5,
+        "tables": 2,
+        "axes": 3,
+        "operand": 18,
+        "state": 36,
+        "family": "generic",
+    }
 
 
 def test_ports(contents, core):
@@ -58,8 +68,12 @@ def test_an_address_is_put_together_as_the_fields_say(contents):
     (port,) = (port for port in contents["ports"] if port["name"] == "address")
     assert sum(field["bits"] for field in fields.values()) == port["bits"]
     for region in contents["regions"]:
-        place = {"region": region["number"], "word": len(region["words"]) - 1, "index": region["depth"] - 1,
-                 "lane": region["lanes"] - 1}
+        place = {
+            "region": region["number"],
+            "word": len(region["words"]) - 1,
+            "index": region["depth"] - 1,
+            "lane": region["lanes"] - 1,
+        }
         assert all(place[name] < 1 << fields[name]["bits"] for name in place)
         address = sum(value << fields[name]["low"] for name, value in place.items())
         word, index, lane = (place[name] for name in ("word", "index", "lane"))
@@ -74,7 +88,8 @@ def test_capacities(regions):
 def test_fields_are_packed_from_the_lowest_bit(regions):
     """As `golden.records.pack` does."""
     expected = {
-        ("NODE", "entry"): records.node_entry(), ("EDGE", "entry"): records.edge_entry(),
+        ("NODE", "entry"): records.node_entry(),
+        ("EDGE", "entry"): records.edge_entry(),
         ("NODE", "inverse_mass"): records.inverse_mass(P.formats),
     }
     for region in regions.values():
@@ -93,8 +108,15 @@ def test_fields_are_packed_from_the_lowest_bit(regions):
 
 def test_words_have_the_formats_of_the_model(regions):
     f = P.formats
-    formats = {"x": f.position, "v": f.velocity, "load": f.accumulator, "force": f.accumulator, "length": f.length,
-               "ratio": f.ratio, **records.material(f, P.tables)}
+    formats = {
+        "x": f.position,
+        "v": f.velocity,
+        "load": f.accumulator,
+        "force": f.accumulator,
+        "length": f.length,
+        "ratio": f.ratio,
+        **records.material(f, P.tables),
+    }
     seen = set()
     for name in ("NODE", "EDGE", "MATERIAL"):
         for word in regions[name]["words"]:

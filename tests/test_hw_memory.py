@@ -75,10 +75,13 @@ def test_a_block_ram_starts_with_its_contents():
     assert seen[READ_LATENCY:] == contents
 
 
-@pytest.mark.parametrize(("parameters", "message"), [
-    (dict(width=8, depth=0), "depth must be at least 1, not 0"),
-    (dict(width=0, depth=8), "width must be at least 1, not 0"),
-])
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        (dict(width=8, depth=0), "depth must be at least 1, not 0"),
+        (dict(width=0, depth=8), "width must be at least 1, not 0"),
+    ],
+)
 @pytest.mark.parametrize("kind", [BlockRam, LutRam])
 def test_a_memory_has_words_and_bits(kind, parameters, message):
     refused(partial(kind, **parameters), message)

@@ -16,7 +16,8 @@ from hw.cost import Cost
 COSTS = {
     "registers as usual": Cost(),
     "as few as can be": Cost(
-        add=0, sub=0, mul=2, abs=0, less=0, select=0, lead=0, shift_left=0, round=0, shift_right=0),
+        add=0, sub=0, mul=2, abs=0, less=0, select=0, lead=0, shift_left=0, round=0, shift_right=0
+    ),
     "one each": Cost(lead=1, shift_right=1, select=1),
     "more than steps": Cost(add=2, sub=2, mul=5, abs=2, less=2, select=2, lead=4, shift_left=2, round=2, shift_right=5),
 }
@@ -92,8 +93,10 @@ OPERATIONS = {
     "shift right and cut, unsigned": ([U, SHIFT], right((0, 12), cut=True, signed=False)),
     "shift right without a fault": ([S, SHIFT], lambda x, n: {"out": x.to(Q(1, 12), right=n)}),
     "a bit that is a fault": ([S, U], reported),
-    "one after the other": ([S, U, SHIFT], lambda x, y, n: {
-        "out": ((x * y).to(Q(1, 17, name="product"), right=n) + x).to(Q(1, 12, name="sum"))}),
+    "one after the other": (
+        [S, U, SHIFT],
+        lambda x, y, n: {"out": ((x * y).to(Q(1, 17, name="product"), right=n) + x).to(Q(1, 12, name="sum"))},
+    ),
 }
 
 
@@ -165,8 +168,12 @@ def test_only_valid_items_report_faults(cost, rng):
 def test_rounding_and_shifting_exhaustively_at_small_widths(source, target):
     target = Q(target.int_bits, target.frac_bits, target.signed, name="narrow")
     count = Q(4, 0)
-    raw, shift = (grid.ravel() for grid in np.meshgrid(
-        np.arange(source.raw_min, source.raw_max + 1), np.arange(count.raw_min, count.raw_max + 1)))
+    raw, shift = (
+        grid.ravel()
+        for grid in np.meshgrid(
+            np.arange(source.raw_min, source.raw_max + 1), np.arange(count.raw_min, count.raw_max + 1)
+        )
+    )
     faults = Counter()
     x, n = QArray(raw, source, faults), QArray(shift, count, faults)
 

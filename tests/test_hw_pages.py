@@ -20,9 +20,11 @@ def test_the_header_compiles_and_gives_the_same_numbers(tmp_path):
     pages.write(P, tmp_path)
     memory = Map(P)
     expected = {
-        f"RHEOGATE_ADDRESS(RHEOGATE_REGION_{region.name}, {word}, {memory.depth(region) - 1}, 0)":
-            join(region, word, memory.depth(region) - 1, 0)
-        for region in Region for word in range(len(memory.words(region)))
+        f"RHEOGATE_ADDRESS(RHEOGATE_REGION_{region.name}, {word}, {memory.depth(region) - 1}, 0)": join(
+            region, word, memory.depth(region) - 1, 0
+        )
+        for region in Region
+        for word in range(len(memory.words(region)))
     }
     expected |= {f"RHEOGATE_CONTROL_{register.name}": register for register in Control}
     expected |= {f"RHEOGATE_LINK_{register.name}": register for register in Link}
@@ -32,9 +34,11 @@ def test_the_header_compiles_and_gives_the_same_numbers(tmp_path):
     expected |= {"RHEOGATE_LANES": 3, "RHEOGATE_STATE": 36, "RHEOGATE_NODE_X_Y": 1}
     prints = "\n".join(f'    printf("%lu\\n", (unsigned long)({expression}));' for expression in expected)
     program = tmp_path / "map.cpp"
-    program.write_text(f"#include <cstdint>\n#include <cstdio>\n#include \"{pages.HEADER}\"\n"
-                       f"const uint8_t the_key[] = RHEOGATE_KEY;\n"
-                       f"int main() {{\n{prints}\n    for (int byte : the_key) printf(\"%02x\", byte);\n}}\n")
+    program.write_text(
+        f'#include <cstdint>\n#include <cstdio>\n#include "{pages.HEADER}"\n'
+        f"const uint8_t the_key[] = RHEOGATE_KEY;\n"
+        f'int main() {{\n{prints}\n    for (int byte : the_key) printf("%02x", byte);\n}}\n'
+    )
     subprocess.run(["c++", "-Wall", "-Werror", "-o", tmp_path / "map", program], check=True)
     *numbers, last = subprocess.run([tmp_path / "map"], capture_output=True, text=True, check=True).stdout.split()
     assert dict(zip(expected, map(int, numbers), strict=True)) == expected and last == key(P).hex()
@@ -54,11 +58,14 @@ def test_the_command(tmp_path, capsys):
     assert f"{tmp_path / 'map'}: " in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("arguments, message", [
-    (["--lanes", "9"], "--lanes must be a whole number from 1 to 8, not 9"),
-    (["--out", "{file}"], "--out must be a folder, not the file {file}"),
-    (["--out", "{file}/map"], "--out must be a folder that can be written, not {file}/map: Not a directory"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (["--lanes", "9"], "--lanes must be a whole number from 1 to 8, not 9"),
+        (["--out", "{file}"], "--out must be a folder, not the file {file}"),
+        (["--out", "{file}/map"], "--out must be a folder that can be written, not {file}/map: Not a directory"),
+    ],
+)
 def test_mistakes(arguments, message, tmp_path, capsys):
     file = tmp_path / "file"
     file.write_text("")

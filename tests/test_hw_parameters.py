@@ -21,7 +21,11 @@ from hw.registers import (
 )
 
 RANGES = {
-    "lanes": (1, 8), "updates": (1, 2), "nodes": (2, 4096), "edges": (1, 65536), "materials": (1, 64),
+    "lanes": (1, 8),
+    "updates": (1, 2),
+    "nodes": (2, 4096),
+    "edges": (1, 65536),
+    "materials": (1, 64),
     "tables": (1, 16),
 }
 LARGEST = Parameters(**{name: high for name, (_, high) in RANGES.items()})
@@ -35,8 +39,9 @@ def test_each_end_of_a_range_is_legal_and_nothing_beyond(name):
     for value in (low, high):
         Parameters(**{name: value})
     for value in (low - 1, high + 1, 1.0, "4", None):
-        refused(partial(Parameters, **{name: value}),
-                f"{name} must be a whole number from {low} to {high}, not {value!r}")
+        refused(
+            partial(Parameters, **{name: value}), f"{name} must be a whole number from {low} to {high}, not {value!r}"
+        )
 
 
 @pytest.mark.parametrize("axes", [0, 2, 4, 1.0, "3", None])
@@ -56,8 +61,9 @@ def test_a_family_that_nobody_knows(family):
 
 def test_a_list_entry_fits_a_state_word():
     Parameters(formats=Formats(16, 34))
-    refused(lambda: Parameters(formats=Formats(16, 33)),
-            "state must be at least 34 bits, as a list's entry has, not 33")
+    refused(
+        lambda: Parameters(formats=Formats(16, 33)), "state must be at least 34 bits, as a list's entry has, not 33"
+    )
 
 
 @pytest.mark.parametrize("p", EXAMPLES, ids=str)
@@ -122,13 +128,16 @@ def test_a_word_may_be_named():
     assert memory.address(Region.CONTROL, 0, Control.RUN) == Control.RUN
 
 
-@pytest.mark.parametrize(("place", "message"), [
-    ((Region.NODE, 14), "NODE word must be below 14, not 14"),
-    ((Region.EDGE, 0, 1024), "EDGE index must be below 1024, not 1024"),
-    ((Region.EDGE, 0, -1), "EDGE index must be below 1024, not -1"),
-    ((Region.MATERIAL, 0, 0, 4), "MATERIAL lane must be below 4, not 4"),
-    ((Region.NODE, 0, 0, 1), "NODE lane must be below 1, not 1"),
-    ((Region.CONTROL, 0, 23), "CONTROL index must be below 23, not 23"),
-])
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ((Region.NODE, 14), "NODE word must be below 14, not 14"),
+        ((Region.EDGE, 0, 1024), "EDGE index must be below 1024, not 1024"),
+        ((Region.EDGE, 0, -1), "EDGE index must be below 1024, not -1"),
+        ((Region.MATERIAL, 0, 0, 4), "MATERIAL lane must be below 4, not 4"),
+        ((Region.NODE, 0, 0, 1), "NODE lane must be below 1, not 1"),
+        ((Region.CONTROL, 0, 23), "CONTROL index must be below 23, not 23"),
+    ],
+)
 def test_there_is_no_address_of_nothing(place, message):
     refused(lambda: Map(Parameters()).address(*place), message)

@@ -60,8 +60,13 @@ def expected(datapath: EdgeDatapath, values, damper, monkeypatch):
 
     numbers = {}
     with monkeypatch.context() as patch:
-        patch.setattr(QArray, "fault", lambda bit, name: cycles.append(
-            (datapath.schedule.cycle[at], name, np.flatnonzero(np.broadcast_to(bit.raw, len(values["i_x_x"]))))))
+        patch.setattr(
+            QArray,
+            "fault",
+            lambda bit, name: cycles.append(
+                (datapath.schedule.cycle[at], name, np.flatnonzero(np.broadcast_to(bit.raw, len(values["i_x_x"]))))
+            ),
+        )
         for node in graph.nodes:
             at = node
             numbers[node] = apply(node, [numbers[operand] for operand in node.operands], inputs, contents, faults)
@@ -115,9 +120,16 @@ def traffic(dut: EdgeProcessor, values, damper, gaps, rng):
     return outputs, starts, faults
 
 
-@pytest.mark.parametrize(("fmt", "cost"), [
-    (Formats(), "generic"), (Formats(), "short"), (Formats(14, 34), "generic"), (Formats(22, 44), "long"),
-], ids=["as built", "fewer registers", "14/34 bits", "22/44 bits, more registers"])
+@pytest.mark.parametrize(
+    ("fmt", "cost"),
+    [
+        (Formats(), "generic"),
+        (Formats(), "short"),
+        (Formats(14, 34), "generic"),
+        (Formats(22, 44), "long"),
+    ],
+    ids=["as built", "fewer registers", "14/34 bits", "22/44 bits, more registers"],
+)
 def test_the_edge_processor_is_the_model(fmt, cost, rng, monkeypatch):
     """Without gaps, then with random ones: outputs, and faults, each in its cycle."""
     datapath, count = EdgeDatapath(fmt, TABLES, COSTS[cost]), 240

@@ -11,11 +11,19 @@ from hw.pll import Dividers, ecp5, none, xilinx
 FAMILIES = {"ecp5": ecp5, "xilinx": xilinx}
 
 
-@pytest.mark.parametrize(("family", "oscillator", "clock", "dividers"), [
-    ("ecp5", 25, 100, (1, 24, 6)), ("ecp5", 25, 120, (1, 24, 5)), ("ecp5", 25, 112.5, (1, 27, 6)),
-    ("ecp5", 48, 72, (1, 12, 8)), ("ecp5", 12, 60, (1, 50, 10)),
-    ("xilinx", 100, 100, (1, 12, 12)), ("xilinx", 100, 120, (1, 12, 10)), ("xilinx", 27, 54, (1, 44, 22)),
-])
+@pytest.mark.parametrize(
+    ("family", "oscillator", "clock", "dividers"),
+    [
+        ("ecp5", 25, 100, (1, 24, 6)),
+        ("ecp5", 25, 120, (1, 24, 5)),
+        ("ecp5", 25, 112.5, (1, 27, 6)),
+        ("ecp5", 48, 72, (1, 12, 8)),
+        ("ecp5", 12, 60, (1, 50, 10)),
+        ("xilinx", 100, 100, (1, 12, 12)),
+        ("xilinx", 100, 120, (1, 12, 10)),
+        ("xilinx", 27, 54, (1, 44, 22)),
+    ],
+)
 def test_dividers(family, oscillator, clock, dividers):
     found = FAMILIES[family].LIMITS.dividers(oscillator, clock)
     assert found == Dividers(*dividers)
@@ -28,10 +36,14 @@ def test_all_that_is_possible_is_within_the_limits(family, oscillator):
     limits, count = FAMILIES[family].LIMITS, 0
     for d in limits.possible(oscillator):
         count += 1
-        for value, (least, most) in ((d.divide, limits.divide), (d.multiply, limits.multiply),
-                                     (d.output, limits.output), (oscillator / d.divide, limits.phase),
-                                     (d.oscillation(oscillator), limits.oscillation),
-                                     (d.mhz(oscillator), limits.clock)):
+        for value, (least, most) in (
+            (d.divide, limits.divide),
+            (d.multiply, limits.multiply),
+            (d.output, limits.output),
+            (oscillator / d.divide, limits.phase),
+            (d.oscillation(oscillator), limits.oscillation),
+            (d.mhz(oscillator), limits.clock),
+        ):
             assert least <= value <= most
     assert count > 500
 
@@ -40,13 +52,21 @@ def test_the_ecp5_oscillates_at_400_to_800_mhz():
     assert ecp5.LIMITS.oscillation == (400, 800)
 
 
-@pytest.mark.parametrize(("family", "oscillator", "clock", "message"), [
-    ("ecp5", 25, 137.3, "clock_mhz must be a frequency that a PLL of ecp5 makes of 25 MHz, as 135 or 137.5, not 137.3"),
-    ("ecp5", 25, 1000, "clock_mhz must be a frequency that a PLL of ecp5 makes of 25 MHz, as 400, not 1000"),
-    ("ecp5", 25, 1, "clock_mhz must be a frequency that a PLL of ecp5 makes of 25 MHz, as 3.14960630, not 1"),
-    ("ecp5", 5, 100, "oscillator_mhz must be 8 to 400 for a PLL of ecp5, not 5"),
-    ("xilinx", 12, 100, "oscillator_mhz must be 19 to 800 for a PLL of xilinx, not 12"),
-])
+@pytest.mark.parametrize(
+    ("family", "oscillator", "clock", "message"),
+    [
+        (
+            "ecp5",
+            25,
+            137.3,
+            "clock_mhz must be a frequency that a PLL of ecp5 makes of 25 MHz, as 135 or 137.5, not 137.3",
+        ),
+        ("ecp5", 25, 1000, "clock_mhz must be a frequency that a PLL of ecp5 makes of 25 MHz, as 400, not 1000"),
+        ("ecp5", 25, 1, "clock_mhz must be a frequency that a PLL of ecp5 makes of 25 MHz, as 3.14960630, not 1"),
+        ("ecp5", 5, 100, "oscillator_mhz must be 8 to 400 for a PLL of ecp5, not 5"),
+        ("xilinx", 12, 100, "oscillator_mhz must be 19 to 800 for a PLL of xilinx, not 12"),
+    ],
+)
 def test_a_clock_that_none_gives_is_refused_with_those_near(family, oscillator, clock, message):
     if clock == 1:
         near = min(d.mhz(oscillator) for d in ecp5.LIMITS.possible(oscillator))

@@ -17,8 +17,15 @@ def test_what_is_reached_is_what_is_less_than_the_count(first, length, rng):
             clear = cycle == 0 or rng.random() < 0.02
             moves, done = rng.random(2) < (0.5, 0.6) if not clear else (0, 0)
             last = count - first == length - 1
-            for port, value in (("front", front), ("behind", behind), ("after", after), ("moves", moves),
-                                ("done", done), ("done_last", last), ("clear", clear)):
+            for port, value in (
+                ("front", front),
+                ("behind", behind),
+                ("after", after),
+                ("moves", moves),
+                ("done", done),
+                ("done_last", last),
+                ("clear", clear),
+            ):
                 ctx.set(getattr(dut, port), int(value))
             await ctx.tick()
             if clear:  # at the start of a run nothing stands in front: a cycle later all has been compared

@@ -18,8 +18,18 @@ from hw.timing.result import Result
 
 STATISTICS = {
     "modules": {"\\rheogate": {}, f"\\{FRAME}": {"num_cells_by_type": {"LUT4": 39, "TRELLIS_FF": 106, "rheogate": 1}}},
-    "design": {"num_cells_by_type": {"LUT4": 1039, "CCU2C": 300, "TRELLIS_DPR16X4": 5, "TRELLIS_FF": 2106, "PFUMX": 70,
-                                     "MULT18X18D": 23, "DP16KD": 10, "PDPW16KD": 3}},
+    "design": {
+        "num_cells_by_type": {
+            "LUT4": 1039,
+            "CCU2C": 300,
+            "TRELLIS_DPR16X4": 5,
+            "TRELLIS_FF": 2106,
+            "PFUMX": 70,
+            "MULT18X18D": 23,
+            "DP16KD": 10,
+            "PDPW16KD": 3,
+        }
+    },
 }
 USED = {"TRELLIS_COMB": 1739, "TRELLIS_FF": 2106, "TRELLIS_RAMW": 5, "MULT18X18D": 23, "DP16KD": 13, "DCCA": 1}
 CLOCK = "posedge $glbnet$clk$TRELLIS_IO_IN"
@@ -42,8 +52,10 @@ def reported(mhz: float, path=PATH) -> dict:
     return {
         "fmax": {CLOCK.removeprefix("posedge "): {"achieved": mhz, "constraint": 150}},
         "utilization": {name: {"used": used, "available": 10**6} for name, used in USED.items()},
-        "critical_paths": [{"from": "<async>", "to": CLOCK, "path": [parts[0] | {"delay": 99.0}]},
-                           {"from": CLOCK, "to": CLOCK, "path": parts}],
+        "critical_paths": [
+            {"from": "<async>", "to": CLOCK, "path": [parts[0] | {"delay": 99.0}]},
+            {"from": CLOCK, "to": CLOCK, "path": parts},
+        ],
     }
 
 
@@ -66,8 +78,10 @@ def measured(**chosen) -> Result:
 
 
 def test_sizes_leave_the_frame_out():
-    assert report.sizes(STATISTICS) == (Sizes(lut=1620, ff=2000, multipliers=23, block_rams=13, lut_ram=20),
-                                        Sizes(lut=39, ff=106, multipliers=0, block_rams=0, lut_ram=0))
+    assert report.sizes(STATISTICS) == (
+        Sizes(lut=1620, ff=2000, multipliers=23, block_rams=13, lut_ram=20),
+        Sizes(lut=39, ff=106, multipliers=0, block_rams=0, lut_ram=0),
+    )
     assert report.placed(reported(100)) - report.sizes(STATISTICS)[1] == SIZES
 
 
@@ -75,17 +89,20 @@ def test_the_critical_path_is_from_register_to_register():
     assert report.critical_path(reported(100)) == STEPS
 
 
-@pytest.mark.parametrize("cell, name", [
-    ("core.lane0.edge.multiplier_3.product_1_TRELLIS_FF_Q_12", "lane0.edge.multiplier_3.product_1"),
-    ("core.sequencer.nodes_over_LUT4_B_Z_LUT4_Z", "sequencer.nodes_over"),
-    ("core.sequencer.summed_TRELLIS_FF_Q_11_DI_LUT4_Z_C_CCU2C_S1_S0_CCU2C_S0", "sequencer.summed"),
-    ("core.lane0.ram.words.0.0_DOB10", "lane0.ram.words"),
-    ("core.lane0.ram.words.0.0", "lane0.ram.words"),
-    ("core.m3.product_MULT18X18D_P0", "m3.product"),
-    ("core.lane0.t12_next", "lane0.t12_next"),
-    ("gathered_TRELLIS_FF_Q_3", "gathered"),
-    ("$nextpnr_CCU2C_241$CCU2_COMB0", ""),
-])
+@pytest.mark.parametrize(
+    "cell, name",
+    [
+        ("core.lane0.edge.multiplier_3.product_1_TRELLIS_FF_Q_12", "lane0.edge.multiplier_3.product_1"),
+        ("core.sequencer.nodes_over_LUT4_B_Z_LUT4_Z", "sequencer.nodes_over"),
+        ("core.sequencer.summed_TRELLIS_FF_Q_11_DI_LUT4_Z_C_CCU2C_S1_S0_CCU2C_S0", "sequencer.summed"),
+        ("core.lane0.ram.words.0.0_DOB10", "lane0.ram.words"),
+        ("core.lane0.ram.words.0.0", "lane0.ram.words"),
+        ("core.m3.product_MULT18X18D_P0", "m3.product"),
+        ("core.lane0.t12_next", "lane0.t12_next"),
+        ("gathered_TRELLIS_FF_Q_3", "gathered"),
+        ("$nextpnr_CCU2C_241$CCU2_COMB0", ""),
+    ],
+)
 def test_names_are_the_designs_own(cell, name):
     assert report.own_name(cell) == name
 
@@ -118,20 +135,29 @@ def test_a_circuit_that_does_not_fit(tools_aside):
     board.holds.multipliers, board.holds.block_rams = 22, 5
     with pytest.raises(InputError) as caught:
         flow.measure("ulx3s-25f", board, board.parameters(), [1], None, lambda doing: None)
-    assert str(caught.value) == ("the circuit must fit ulx3s-25f, not take 23 multipliers of 22, 13 block RAMs of 5: "
-                                 "choose fewer lanes, nodes or edges")
+    assert str(caught.value) == (
+        "the circuit must fit ulx3s-25f, not take 23 multipliers of 22, 13 block RAMs of 5: "
+        "choose fewer lanes, nodes or edges"
+    )
 
 
 def test_the_table(tools_aside):
     lines = result.table(measured(), boards.load("ulx3s-85f")).splitlines()
-    assert lines[0] == ("ulx3s-85f (85k, speed grade 6): 4 lanes, 1 update, 512 nodes, 4096 edges, 16 materials, "
-                        "4 tables")
+    assert lines[0] == (
+        "ulx3s-85f (85k, speed grade 6): 4 lanes, 1 update, 512 nodes, 4096 edges, 16 materials, 4 tables"
+    )
     assert lines[2] == "Fmax    101.5 MHz at least, 120.0 MHz median of 120.0, 133.0, 101.5"
-    assert lines[6:9] == ["              takes      of",
-                          "LUT            1700   83640    2%",
-                          "FF             2000   83640    2%"]
-    assert lines[-4:] == ["critical path, 5.00 ns, of the run with the median", "    0.52  lane0.ram.words",
-                          "    2.18  queue.words", "    2.30  sequencer.left"]
+    assert lines[6:9] == [
+        "              takes      of",
+        "LUT            1700   83640    2%",
+        "FF             2000   83640    2%",
+    ]
+    assert lines[-4:] == [
+        "critical path, 5.00 ns, of the run with the median",
+        "    0.52  lane0.ram.words",
+        "    2.18  queue.words",
+        "    2.30  sequencer.left",
+    ]
     assert max(map(len, lines)) <= 100
 
 
@@ -140,8 +166,10 @@ def test_what_is_kept_is_published(tools_aside, tmp_path):
     header, rule, small, large = result.published(tmp_path).splitlines()
     assert header.count("|") == rule.count("|") == small.count("|") == large.count("|")
     assert small.startswith("| ulx3s-25f | not timed yet |")
-    assert large == ("| ulx3s-85f | 4 | 1 | 512 | 4096 | 1700 (2%) | 2000 (2%) | 23 (15%) | 13 (6%) | 101.5 MHz | "
-                     "120.0 MHz | 170.0 MHz | 120.0 MHz |")
+    assert large == (
+        "| ulx3s-85f | 4 | 1 | 512 | 4096 | 1700 (2%) | 2000 (2%) | 23 (15%) | 13 (6%) | 101.5 MHz | "
+        "120.0 MHz | 170.0 MHz | 120.0 MHz |"
+    )
 
 
 def test_files_that_are_kept_are_results():
@@ -176,20 +204,24 @@ def test_keep_publishes(tools_aside, tmp_path, capsys):
 HELP = "(see python -m hw timing --help)"
 
 
-@pytest.mark.parametrize("options, message", [
-    ("", f"one of the arguments --board --smallest is required {HELP}"),
-    ("--board x", "--board must be arty-a7-100 or tang-mega-138k-pro or ulx3s-25f or ulx3s-85f, "
-     "not 'x'"),
-    ("--board arty-a7-100", "--board must be one whose device the tools time, ulx3s-25f or ulx3s-85f, not "
-     "'arty-a7-100'"),
-    ("--board ulx3s-85f --lanes 0", "--lanes must be a whole number from 1 to {lanes}, not 0"),
-    ("--board ulx3s-85f --seeds 1 0", "--seeds must be different numbers from 1 to 2147483647, not 0"),
-    ("--board ulx3s-85f --seeds 1 2 1", "--seeds must be different numbers from 1 to 2147483647, not 1"),
-    ("--board ulx3s-85f --seeds a", f"argument --seeds: must be a whole number, not 'a' {HELP}"),
-    ("--board ulx3s-85f --keep --seeds 1 2", "--keep must be of the board's own circuit and at least 3 seeds"),
-    ("--board ulx3s-85f --jobs 0", "--jobs must be 1 to 64, not 0"),
-    ("--board ulx3s-85f --keep --lanes 1", "--keep must be of the board's own circuit and at least 3 seeds"),
-])
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ("", f"one of the arguments --board --smallest is required {HELP}"),
+        ("--board x", "--board must be arty-a7-100 or tang-mega-138k-pro or ulx3s-25f or ulx3s-85f, not 'x'"),
+        (
+            "--board arty-a7-100",
+            "--board must be one whose device the tools time, ulx3s-25f or ulx3s-85f, not 'arty-a7-100'",
+        ),
+        ("--board ulx3s-85f --lanes 0", "--lanes must be a whole number from 1 to {lanes}, not 0"),
+        ("--board ulx3s-85f --seeds 1 0", "--seeds must be different numbers from 1 to 2147483647, not 0"),
+        ("--board ulx3s-85f --seeds 1 2 1", "--seeds must be different numbers from 1 to 2147483647, not 1"),
+        ("--board ulx3s-85f --seeds a", f"argument --seeds: must be a whole number, not 'a' {HELP}"),
+        ("--board ulx3s-85f --keep --seeds 1 2", "--keep must be of the board's own circuit and at least 3 seeds"),
+        ("--board ulx3s-85f --jobs 0", "--jobs must be 1 to 64, not 0"),
+        ("--board ulx3s-85f --keep --lanes 1", "--keep must be of the board's own circuit and at least 3 seeds"),
+    ],
+)
 def test_impossible_options_are_one_line(options, message, tools_aside, tmp_path, capsys):
     assert main(["timing", *options.split()]) == 2
     message = message.format(lanes=Parameters.RANGES["lanes"][1])

@@ -52,8 +52,10 @@ class Nodes:
         raw["velocity_shift"] = np.int64(SHIFT), self.fmt.exponent
         numbers = {name: QArray(np.ascontiguousarray(values), fmt, self.faults) for name, (values, fmt) in raw.items()}
         results = call_node(self.fmt, self.banks, numbers)
-        after = {name: np.stack([c.raw for c in results[name]], 1) for name in ("x", "v", "force", "x_base_next",
-                                                                                "v_base_next", "x_total", "v_total")}
+        after = {
+            name: np.stack([c.raw for c in results[name]], 1)
+            for name in ("x", "v", "force", "x_base_next", "v_base_next", "x_total", "v_total")
+        }
         self.x, self.force = after["x"], after["force"]
         self.vectors = {name: after.get(f"{name}_next", after.get(name)) for name in VECTORS}
 
@@ -140,9 +142,16 @@ def updater(parameters):
     return NodeUpdater(parameters, datapaths(parameters)[1])
 
 
-@pytest.mark.parametrize(("axes", "lanes", "order", "widest_gap"), [
-    (3, 1, "up", 0), (3, 2, "any", 2), (1, 1, "up", 0), (1, 2, "any", 2), (1, 1, "any", 5),
-])
+@pytest.mark.parametrize(
+    ("axes", "lanes", "order", "widest_gap"),
+    [
+        (3, 1, "up", 0),
+        (3, 2, "any", 2),
+        (1, 1, "up", 0),
+        (1, 2, "any", 2),
+        (1, 1, "any", 5),
+    ],
+)
 def test_whole_steps(axes, lanes, order, widest_gap, rng):
     parameters = Parameters(lanes=lanes, nodes=NODES, edges=8, materials=2, tables=1, axes=axes)
     dut, nodes = updater(parameters), Nodes(parameters.formats, rng, 2 * lanes)
@@ -159,8 +168,10 @@ def test_whole_steps(axes, lanes, order, widest_gap, rng):
                 await run.stage(ctx, stage)
             for k, axis in enumerate(AXES):
                 for port, values in (
-                    (f"host_x_{axis}", nodes.x), (f"host_v_{axis}", nodes.vectors["v"]),
-                    (f"host_force_{axis}", nodes.force), (f"host_load_{axis}", nodes.load),
+                    (f"host_x_{axis}", nodes.x),
+                    (f"host_v_{axis}", nodes.vectors["v"]),
+                    (f"host_force_{axis}", nodes.force),
+                    (f"host_load_{axis}", nodes.load),
                 ):
                     assert await run.read(ctx, getattr(dut, port)) == (values[:, k] % state).tolist(), (step, port)
             assert await run.read(ctx, dut.host_mass) == packed

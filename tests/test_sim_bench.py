@@ -77,20 +77,34 @@ class Run:
         end = 1 << FORMATS.damper_index.width + FORMATS.damper_fraction.width
         table = ~m["below"].astype(bool) & m["between"].astype(bool)
         at_g1, at_g2 = m["size"] == inputs["material_g1"], m["size"] == inputs["material_g2"]
-        return Counter({name: int(np.count_nonzero(mask)) for name, mask in {
-            "|g| = g1": at_g1, "|g| = g2 > g1": at_g2 & ~at_g1,
-            "|g| = g1 - 1": m["size"] == inputs["material_g1"] - 1,
-            "|g| = g2 - 1": m["size"] == inputs["material_g2"] - 1,
-            "|g| below g1": m["below"] == 1, "|g| in the table": table, "|g| above": ~table & (m["below"] == 0),
-            "g = 0": m["size"] == 0, "g < 0": m["negative"] == 1,
-            "q < 1": m["short"] == 1, "q >= 1": m["short"] == 0, "too short": m["degenerate"] == 1,
-            "a segment's edge": table & (m["place"] % (1 << FORMATS.damper_fraction.width) == 0),
-            "before the table": table & (m["place"] < 0), "behind the table": table & (m["place"] >= end),
-            "first segment": table & (m["place"] == m["place"] % end) & (m["segment"] == 0),
-            "last segment": table & (m["place"] == m["place"] % end) & (m["segment"] == 511),
-            "shift of 0 for f": m["f_shift"] == 0, "shift of -1 for f": m["f_shift"] == -1,
-            "shift of 0 for s": m["s_shift"] == 0, "shift of -1 for s": m["s_shift"] == -1,
-        }.items()})
+        return Counter(
+            {
+                name: int(np.count_nonzero(mask))
+                for name, mask in {
+                    "|g| = g1": at_g1,
+                    "|g| = g2 > g1": at_g2 & ~at_g1,
+                    "|g| = g1 - 1": m["size"] == inputs["material_g1"] - 1,
+                    "|g| = g2 - 1": m["size"] == inputs["material_g2"] - 1,
+                    "|g| below g1": m["below"] == 1,
+                    "|g| in the table": table,
+                    "|g| above": ~table & (m["below"] == 0),
+                    "g = 0": m["size"] == 0,
+                    "g < 0": m["negative"] == 1,
+                    "q < 1": m["short"] == 1,
+                    "q >= 1": m["short"] == 0,
+                    "too short": m["degenerate"] == 1,
+                    "a segment's edge": table & (m["place"] % (1 << FORMATS.damper_fraction.width) == 0),
+                    "before the table": table & (m["place"] < 0),
+                    "behind the table": table & (m["place"] >= end),
+                    "first segment": table & (m["place"] == m["place"] % end) & (m["segment"] == 0),
+                    "last segment": table & (m["place"] == m["place"] % end) & (m["segment"] == 511),
+                    "shift of 0 for f": m["f_shift"] == 0,
+                    "shift of -1 for f": m["f_shift"] == -1,
+                    "shift of 0 for s": m["s_shift"] == 0,
+                    "shift of -1 for s": m["s_shift"] == -1,
+                }.items()
+            }
+        )
 
 
 def hashes(rows):

@@ -1,4 +1,5 @@
 """python -m sim: what it writes, what it refuses, and its exit codes."""
+
 import json
 import subprocess
 import sys
@@ -61,11 +62,26 @@ def test_run_writes_the_trajectory_and_a_summary(backend, scene, tmp_path, capsy
             np.testing.assert_array_equal(archive[name], getattr(kept, name))
     summary = json.loads((out / "summary.json").read_text())
     phases = [{"name": "press", "steps": 20}, {"name": "phase 2", "steps": 50}]
-    expected = {"scene": "block", "backend": backend, "dim": 2, "force_dependent": False, "nodes": 9, "edges": 16,
-                "size": 0.2, "steps": 70, "dt": 1e-4, "frames": len(kept.t), "saturations": 0, "faults": {},
-                "lanes": None, "updates": None, "cycles": None, "phases": phases,
-                "largest_displacement": float(np.linalg.norm(kept.x - kept.x[0], axis=2).max()),
-                "final_displacement": float(np.linalg.norm(kept.x[-1] - kept.x[0], axis=1).max())}
+    expected = {
+        "scene": "block",
+        "backend": backend,
+        "dim": 2,
+        "force_dependent": False,
+        "nodes": 9,
+        "edges": 16,
+        "size": 0.2,
+        "steps": 70,
+        "dt": 1e-4,
+        "frames": len(kept.t),
+        "saturations": 0,
+        "faults": {},
+        "lanes": None,
+        "updates": None,
+        "cycles": None,
+        "phases": phases,
+        "largest_displacement": float(np.linalg.norm(kept.x - kept.x[0], axis=2).max()),
+        "final_displacement": float(np.linalg.norm(kept.x[-1] - kept.x[0], axis=1).max()),
+    }
     assert {key: summary[key] for key in expected} == expected
     assert (summary["units"] is None) == (backend == "float")
     out, err = lines(capsys)
@@ -78,8 +94,7 @@ def test_run_on_the_circuit(circuit, scene, tmp_path, monkeypatch):
     assert main(["run", scene, "--backend", "rtl", "--lanes", "3", "--updates", "2", "--waves", "--out", str(out)]) == 0
     assert main(["run", scene, "--backend", "rtl", "--waves", "fst", "--out", str(out)]) == 0
     assert main(["run", scene, "--backend", "rtl", "--out", str(out)]) == 0
-    assert circuit.asked == [
-        (3, 2, out / "waves.vcd"), (LANES, UPDATES, out / "waves.fst"), (LANES, UPDATES, None)]
+    assert circuit.asked == [(3, 2, out / "waves.vcd"), (LANES, UPDATES, out / "waves.fst"), (LANES, UPDATES, None)]
     summary = json.loads((out / "summary.json").read_text())
     assert (summary["lanes"], summary["updates"], summary["cycles"]) == (LANES, UPDATES, 7000)
 
@@ -120,9 +135,13 @@ def test_compare(circuit, scene, tmp_path, capsys, monkeypatch):
     assert max(map(len, said)) <= 105 and len(said) <= 12
 
 
-@pytest.mark.parametrize(("command", "file"), [
-    (["run", "--backend", "fixed"], "summary.json"), (["compare"], "compare.json"),
-])
+@pytest.mark.parametrize(
+    ("command", "file"),
+    [
+        (["run", "--backend", "fixed"], "summary.json"),
+        (["compare"], "compare.json"),
+    ],
+)
 def test_scripts_get_the_file_itself(command, file, circuit, scene, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(batch, "cores", lambda: 1)
     assert main([*command, scene, "--json", "--out", str(tmp_path / "out")]) == 0
@@ -169,8 +188,11 @@ def test_a_run_that_saturated_fails_in_the_report_too(tmp_path, capsys, monkeypa
 
 def test_what_is_no_run_is_refused_before_anything_is_written(tmp_path, capsys):
     nothing = tmp_path / "nothing"
-    refused(["report", str(nothing), "--out", str(tmp_path / "page")],
-            f"RUN must be a folder that `python -m sim run` left, not {nothing}: it has no summary.json", capsys)
+    refused(
+        ["report", str(nothing), "--out", str(tmp_path / "page")],
+        f"RUN must be a folder that `python -m sim run` left, not {nothing}: it has no summary.json",
+        capsys,
+    )
     assert not (tmp_path / "page").exists()
 
 
@@ -205,8 +227,9 @@ def test_two_models_that_disagree_are_an_internal_error(scene, tmp_path, capsys,
     monkeypatch.setattr(native, "NativeMachine", OneBit)
     assert main(["run", scene, "--backend", "fixed", "--out", str(tmp_path / "out")]) == 1
     out, err = lines(capsys)
-    assert out == [] and err == [f"internal error: {scene}: the compiled integer model and the NumPy model differ in x "
-                                 "after step 20"]
+    assert out == [] and err == [
+        f"internal error: {scene}: the compiled integer model and the NumPy model differ in x after step 20"
+    ]
     assert not (tmp_path / "out" / "summary.json").exists()
 
 
@@ -221,6 +244,7 @@ def test_an_interrupt_is_quiet(scene, tmp_path, capsys, monkeypatch):
 
 def test_the_command_itself(scene, tmp_path):
     """Once through the interpreter: exit codes and streams are the shell's."""
+
     def command(*arguments):
         return subprocess.run([sys.executable, "-m", "sim", *arguments], cwd=ROOT, capture_output=True, text=True)
 

@@ -1,4 +1,5 @@
 """sim.compare: the figures of a comparison, what passes, and many scenes at once."""
+
 import json
 from dataclasses import replace
 
@@ -13,9 +14,33 @@ from sim.compare import COMPARED, compare, completed, power, shortcomings
 from sim.face import watched
 from sim.run import run
 
-KEYS = ["scene", "dim", "force_dependent", "nodes", "edges", "steps", "dt", "backends", "lanes", "updates", "cycles",
-        "cycles_per_step", "occupancy", "boards", "rtl_equals_fixed", "max_dx_rel", "final_dx_rel", "bound", "recovery",
-        "max_da", "energy", "saturations", "faults", "ranges", "seconds"]
+KEYS = [
+    "scene",
+    "dim",
+    "force_dependent",
+    "nodes",
+    "edges",
+    "steps",
+    "dt",
+    "backends",
+    "lanes",
+    "updates",
+    "cycles",
+    "cycles_per_step",
+    "occupancy",
+    "boards",
+    "rtl_equals_fixed",
+    "max_dx_rel",
+    "final_dx_rel",
+    "bound",
+    "recovery",
+    "max_da",
+    "energy",
+    "saturations",
+    "faults",
+    "ranges",
+    "seconds",
+]
 
 
 @pytest.fixture
@@ -44,10 +69,25 @@ def test_entry(circuit, material):
     entry = result.entry()
     assert list(entry) == KEYS
     json.dumps(entry, allow_nan=False)
-    expected = {"scene": "object", "dim": 2, "nodes": 12, "edges": 23, "steps": 25, "dt": DT, "lanes": 2, "updates": 1,
-                "cycles": 2500, "rtl_equals_fixed": True, "saturations": 0, "faults": {"fixed": {}, "rtl": {}},
-                "backends": ["float", "fixed", "rtl"], "cycles_per_step": 100, "occupancy": 4 * 23 / 200,
-                "force_dependent": scene.force_dependent, "bound": 5e-5 if scene.force_dependent else 1e-5}
+    expected = {
+        "scene": "object",
+        "dim": 2,
+        "nodes": 12,
+        "edges": 23,
+        "steps": 25,
+        "dt": DT,
+        "lanes": 2,
+        "updates": 1,
+        "cycles": 2500,
+        "rtl_equals_fixed": True,
+        "saturations": 0,
+        "faults": {"fixed": {}, "rtl": {}},
+        "backends": ["float", "fixed", "rtl"],
+        "cycles_per_step": 100,
+        "occupancy": 4 * 23 / 200,
+        "force_dependent": scene.force_dependent,
+        "bound": 5e-5 if scene.force_dependent else 1e-5,
+    }
     assert {key: entry[key] for key in expected} == expected
     apart = result.circuit.trajectory.x - result.float64.trajectory.x
     largest = max(np.hypot(*node) for frame in apart for node in frame)
@@ -95,10 +135,18 @@ def test_shortcomings():
     assert shortcomings(entry | {"rtl_equals_fixed": None}) == []
     assert shortcomings(entry | {"max_dx_rel": 1.26e-5}) == ["max_dx_rel must be at most 1e-5, not 1.3e-5"]
     assert shortcomings(entry | {"max_dx_rel": float("nan")}) == ["max_dx_rel must be at most 1e-5, not nan"]
-    everything = {"rtl_equals_fixed": False, "saturations": 3, "faults": {"fixed": {"b": 2, "a": 1}, "rtl": {"b": 1}},
-                  "max_dx_rel": 1, "bound": 5e-5}
-    assert shortcomings(everything) == ["the circuit's frames differ from the integer model's", "saturated: a, b",
-                                        "max_dx_rel must be at most 5e-5, not 1e0"]
+    everything = {
+        "rtl_equals_fixed": False,
+        "saturations": 3,
+        "faults": {"fixed": {"b": 2, "a": 1}, "rtl": {"b": 1}},
+        "max_dx_rel": 1,
+        "bound": 5e-5,
+    }
+    assert shortcomings(everything) == [
+        "the circuit's frames differ from the integer model's",
+        "saturated: a, b",
+        "max_dx_rel must be at most 5e-5, not 1e0",
+    ]
 
 
 @pytest.mark.parametrize("x, text", [(1e-5, "1e-5"), (1.34e-6, "1.3e-6"), (9.99e-7, "1e-6"), (0.0, "0"), (20, "2e1")])
@@ -114,8 +162,9 @@ def test_comparing_tells_how_far_it_is(circuit):
 
 
 # how much an object comes back, of which the paper's figures tell: the clay stays, the gel returns
-@pytest.mark.parametrize("material, low, high", [("plastic", -0.01, 0.05), ("viscoelastic", 0.95, 1.05),
-                                                 ("rheological", 0.2, 0.9)])
+@pytest.mark.parametrize(
+    "material, low, high", [("plastic", -0.01, 0.05), ("viscoelastic", 0.95, 1.05), ("rheological", 0.2, 0.9)]
+)
 def test_recovery(material, low, high):
     scene = block(material, steps=(40, 300, 3000), every=400, mass=0.001)
     assert low <= watched(scene).recovery(scene, run(scene, "float").trajectory) <= high

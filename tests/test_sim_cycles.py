@@ -26,10 +26,16 @@ def test_entries_go_in_turn():
     assert in_turn(np.array([0, 0, 9, 0, 20]), 4, 3).tolist() == [4, 7, 10, 13, 20]
 
 
-@pytest.mark.parametrize(("nodes", "lanes", "updates", "least"), [
-    ((8, 8, 8), 4, 1, 0.98), ((4, 4, 32), 4, 1, 0.98), ((23, 23), 4, 2, 0.98), ((5, 5, 5), 4, 1, 0.95),
-    ((9, 9), 4, 2, 0.60),
-])
+@pytest.mark.parametrize(
+    ("nodes", "lanes", "updates", "least"),
+    [
+        ((8, 8, 8), 4, 1, 0.98),
+        ((4, 4, 32), 4, 1, 0.98),
+        ((23, 23), 4, 2, 0.98),
+        ((5, 5, 5), 4, 1, 0.95),
+        ((9, 9), 4, 2, 0.60),
+    ],
+)
 def test_lanes_are_as_busy_as_is_promised(nodes, lanes, updates, least):
     model, _ = wavefront(nodes, lanes, updates)
     print(f"{nodes}: {model.per_step()} cycles a step, occupancy {model.occupancy():.4f}")

@@ -1,4 +1,5 @@
 """sim.energy: what goes in is what is there and what the dampers turned into heat."""
+
 import golden_objects as objects
 import numpy as np
 import pytest
@@ -66,8 +67,14 @@ def test_heat_does_not_come_back(material):
 def test_a_load_works_along_its_way():
     """A constant force on a free object: its work is force times way, and all of it can be found again."""
     m = MESHES[2]
-    scene = objects.scene(m, MATERIALS["viscoelastic"], DT, [objects.phase(m, 200, load=(objects.top(m), (0.3, 0.2)))],
-                          mass=0.01, every=50)
+    scene = objects.scene(
+        m,
+        MATERIALS["viscoelastic"],
+        DT,
+        [objects.phase(m, 200, load=(objects.top(m), (0.3, 0.2)))],
+        mass=0.01,
+        every=50,
+    )
     trajectory = run(scene, "float").trajectory
     result = energy.energies(scene, trajectory)
     way = (trajectory.x[-1] - trajectory.x[0])[objects.top(m)]

@@ -1,4 +1,5 @@
 """A run as a time series for ParaView: what is in the files is what was run."""
+
 from xml.etree import ElementTree
 
 import meshio
@@ -12,9 +13,15 @@ from sim import store
 from sim.__main__ import main
 from sim.folder import MARK
 
-BALL = changed(changed(changed((ROOT / "scenes" / "ball.toml").read_text(),
-                               "duration = 0.085", "duration = 0.005"), "duration = 0.15", "duration = 0.005"),
-               "count = 100", "every = 13")
+BALL = changed(
+    changed(
+        changed((ROOT / "scenes" / "ball.toml").read_text(), "duration = 0.085", "duration = 0.005"),
+        "duration = 0.15",
+        "duration = 0.005",
+    ),
+    "count = 100",
+    "every = 13",
+)
 
 
 @pytest.fixture(params=["2-D", "3-D"])
@@ -68,8 +75,10 @@ def test_a_frame_is_the_runs(run):
         np.add.at(again, j, push)
         np.add.at(again, i, -push)
         np.testing.assert_allclose(again, sums, rtol=1e-9, atol=1e-12 * max(1, np.abs(sums).max()))
-        around = [[k for k, edge in enumerate(scene.mesh.edges.tolist()) if set(edge) <= set(cell)]
-                  for cell in scene.mesh.cells[:20].tolist()]
+        around = [
+            [k for k, edge in enumerate(scene.mesh.edges.tolist()) if set(edge) <= set(cell)]
+            for cell in scene.mesh.cells[:20].tolist()
+        ]
         for name in ("ratio", "force"):
             on_edges, on_elements = frame.cell_data[name]
             np.testing.assert_allclose(on_elements[:20], on_edges[around].mean(axis=1), rtol=1e-12, atol=1e-15)
@@ -93,12 +102,18 @@ def test_to_another_folder(run, tmp_path, capsys):
     assert (out / "run.pvd").exists() and not (run / "vtu").exists()
 
 
-@pytest.mark.parametrize(("arguments", "message"), [
-    (["RUN"], "the following arguments are required: --vtu (see python -m sim export --help)"),
-    (["absent", "--vtu"], "RUN must be a folder that `python -m sim run` left, not absent: it has no summary.json"),
-    (["RUN", "--vtu", "--out", "theirs"], "--out must be a new folder or one of earlier results, not theirs, which "
-     "holds other files: choose another, or add --force to write into it all the same"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["RUN"], "the following arguments are required: --vtu (see python -m sim export --help)"),
+        (["absent", "--vtu"], "RUN must be a folder that `python -m sim run` left, not absent: it has no summary.json"),
+        (
+            ["RUN", "--vtu", "--out", "theirs"],
+            "--out must be a new folder or one of earlier results, not theirs, which "
+            "holds other files: choose another, or add --force to write into it all the same",
+        ),
+    ],
+)
 def test_mistakes(arguments, message, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     main(["run", str(written(tmp_path)), "--backend", "float", "--out", "RUN"])

@@ -1,4 +1,5 @@
 """sim.figures: the files, their scales and colours, and the command that makes them."""
+
 import json
 import xml.etree.ElementTree as ElementTree
 
@@ -78,24 +79,36 @@ def inches_per_mm(figure):
             yield box.width * size[0] / np.ptp(axes.get_xlim()), box.height * size[1] / np.ptp(axes.get_ylim())
 
 
-@pytest.mark.parametrize("names, draw, scale, drawings", [
-    (("figure-3", "figure-4", "figure-5"), pressed.draw, paper.SCALE, 9),
-    (("figure-6",), solid.draw, solid.SCALE, 9),
-    (("gravity",), gravity.draw, gravity.SCALE, 6),
-])
+@pytest.mark.parametrize(
+    "names, draw, scale, drawings",
+    [
+        (("figure-3", "figure-4", "figure-5"), pressed.draw, paper.SCALE, 9),
+        (("figure-6",), solid.draw, solid.SCALE, 9),
+        (("gravity",), gravity.draw, gravity.SCALE, 6),
+    ],
+)
 def test_one_scale_in_all_drawings(names, draw, scale, drawings):
     scales = [each for name in names for each in inches_per_mm(draw(pairs(name)))]
     np.testing.assert_allclose(scales, np.full((drawings, 2), scale), rtol=1e-9)
 
 
-@pytest.mark.parametrize("names, draw, shade", [
-    (("figure-3", "figure-4", "figure-5"), pressed.draw, body.STRAIN), (("figure-6",), solid.draw, body.STRAIN),
-    (("gravity",), gravity.draw, body.RATIO)])
+@pytest.mark.parametrize(
+    "names, draw, shade",
+    [
+        (("figure-3", "figure-4", "figure-5"), pressed.draw, body.STRAIN),
+        (("figure-6",), solid.draw, body.STRAIN),
+        (("gravity",), gravity.draw, body.RATIO),
+    ],
+)
 def test_one_colour_bar_that_holds_what_is_drawn(names, draw, shade):
     for name in names:
         figure = draw(pairs(name))
-        painted = [each for axes in figure.axes for each in axes.collections
-                   if isinstance(each, PolyCollection) and each.get_array() is not None]
+        painted = [
+            each
+            for axes in figure.axes
+            for each in axes.collections
+            if isinstance(each, PolyCollection) and each.get_array() is not None
+        ]
         values = np.concatenate([each.get_array() for each in painted])
         assert all(each.norm is shade.norm and each.cmap is body.COLOURS for each in painted)
         assert (shade.norm.vmin <= values.min() and values.max() <= shade.norm.vmax) == (shade.extend == "neither")
@@ -148,7 +161,10 @@ def test_the_command(short, one_process, tmp_path, capsys):
     said, err = capsys.readouterr()
     assert err == "" and str(out / "figures.json") in said
     assert [line.split()[:2] for line in said.splitlines()[1:4]] == [
-        ["plastic", "bounce-back"], ["plastic", "residual"], ["plastic", "max"]]
+        ["plastic", "bounce-back"],
+        ["plastic", "residual"],
+        ["plastic", "max"],
+    ]
     assert all(line.endswith("passes") for line in said.splitlines()[1:4])
     assert {path.name for path in out.iterdir()} == {MARK, "figures.json"} | {f"figure-4.{s}" for s in SUFFIXES}
     entry = json.loads((out / "figures.json").read_text())["figure-4"]
@@ -184,11 +200,17 @@ def test_progress_on_a_terminal(short, one_process, tmp_path, capsys, monkeypatc
     assert "figure-4" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments, message", [
-    (["figure-2"], "NAME must be one of figure-1, figure-3, figure-4, figure-5, figure-6, gravity, not 'figure-2'"),
-    (["--backend", "float"], "argument --backend: invalid choice: 'float' (choose from 'fixed', 'rtl') "
-     "(see python -m sim figures --help)"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (["figure-2"], "NAME must be one of figure-1, figure-3, figure-4, figure-5, figure-6, gravity, not 'figure-2'"),
+        (
+            ["--backend", "float"],
+            "argument --backend: invalid choice: 'float' (choose from 'fixed', 'rtl') "
+            "(see python -m sim figures --help)",
+        ),
+    ],
+)
 def test_mistakes_are_refused_before_anything_runs(arguments, message, tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["figures", *arguments, "--out", str(out)]) == 2
@@ -209,8 +231,9 @@ def test_numbers_that_cannot_be_read_are_not_overwritten(text, tmp_path, capsys)
     (tmp_path / "figures.json").write_text(text)
     assert main(["figures", "figure-4", "--out", str(tmp_path)]) == 2
     err = capsys.readouterr().err
-    assert err == (f"error: {tmp_path / 'figures.json'} must be what `python -m sim figures` left, not something else: "
-                   "remove it\n")
+    assert err == (
+        f"error: {tmp_path / 'figures.json'} must be what `python -m sim figures` left, not something else: remove it\n"
+    )
     assert (tmp_path / "figures.json").read_text() == text
 
 

@@ -1,4 +1,5 @@
 """sim.figures.reading: what the figures show is what the theory and float64 say."""
+
 import math
 from dataclasses import replace
 
@@ -96,8 +97,9 @@ def test_a_run_that_is_off_does_not_pass():
     run = block.circuit.trajectory
     x = run.x.copy()
     x[-1, block.face.nodes, 1] += 2e-3 * 0.025
-    off = replace(block, circuit=replace(block.circuit, trajectory=Trajectory(run.t, x, run.v, run.a, run.reaction,
-                                                                              run.edges)))
+    off = replace(
+        block, circuit=replace(block.circuit, trajectory=Trajectory(run.t, x, run.v, run.a, run.reaction, run.edges))
+    )
     back, residual = reading.press(off)
     assert not back.passes and not residual.passes and not reading.apart(off).passes
     assert back.shortcoming() == "rheological: bounce-back must be within 0.001 of float64, not 0.00428 off"
@@ -106,5 +108,6 @@ def test_a_run_that_is_off_does_not_pass():
 def test_sides_that_go_inwards_do_not_pass():
     read = replace(reading.bulge(pair("plastic-3d")), circuit=-1e-3, expected=-1e-3)
     assert read.difference == 0 and not read.passes
-    assert read.shortcoming() == ("plastic-3d: side bulge must be within 0.0001 of float64, not 0 off, and above 0, "
-                                  "not -0.001 m")
+    assert read.shortcoming() == (
+        "plastic-3d: side bulge must be within 0.0001 of float64, not 0 off, and above 0, not -0.001 m"
+    )

@@ -1,4 +1,5 @@
 """sim.units, sim.image and sim.limits: SI numbers survive the way into the circuit's integers and back."""
+
 import golden_objects as objects
 import numpy as np
 import pytest
@@ -25,11 +26,21 @@ def mixed(**kwargs):
     """Two materials, gravity and a load on every node, so that no two numbers of the image are alike."""
     m = MESHES[2]
     push = 0.01 * np.arange(24).reshape(12, 2)
-    phases = [objects.phase(m, 20, objects.bottom(m), (objects.top(m), (0.03, -0.1)), (range(12), push)),
-              objects.phase(m, 20, objects.bottom(m))]
+    phases = [
+        objects.phase(m, 20, objects.bottom(m), (objects.top(m), (0.03, -0.1)), (range(12), push)),
+        objects.phase(m, 20, objects.bottom(m)),
+    ]
     pair = (MATERIALS["rheological-force"], materials.rheological("gum", 150.0, 0.7, 30.0, 0.2, 0.8, 0.6))
-    return objects.scene(m, pair, DT, phases, mass=0.01 + 0.001 * np.arange(12), gravity=(0.5, -9.81),
-                         edge_material=np.arange(len(m.edges)) % 2, **kwargs)
+    return objects.scene(
+        m,
+        pair,
+        DT,
+        phases,
+        mass=0.01 + 0.001 * np.arange(12),
+        gravity=(0.5, -9.81),
+        edge_material=np.arange(len(m.edges)) % 2,
+        **kwargs,
+    )
 
 
 def test_positions_velocities_forces_and_ratios_come_back():
@@ -41,13 +52,17 @@ def test_positions_velocities_forces_and_ratios_come_back():
         return {"rtol": 0, "atol": 0.5001 * q.lsb * unit}
 
     np.testing.assert_allclose(loaded.positions(image.x), scene.mesh.points, **half_a_bit(FMT.position, units.size))
-    np.testing.assert_allclose(loaded.velocities(image.v), scene.phases[0].velocity,
-                               **half_a_bit(FMT.velocity, units.velocity))
+    np.testing.assert_allclose(
+        loaded.velocities(image.v), scene.phases[0].velocity, **half_a_bit(FMT.velocity, units.velocity)
+    )
     external = scene.phases[0].load + scene.mass[:, None] * scene.gravity
     np.testing.assert_allclose(loaded.forces(image.load), external, **half_a_bit(FMT.accumulator, units.force))
     np.testing.assert_allclose(loaded.ratios(image.ratio), scene.per_edge("a0"), **half_a_bit(FMT.ratio, 1))
-    np.testing.assert_allclose(loaded.ratios(image.length), scene.per_edge("a0") * lengths(scene) / units.size
-                               * 2.0 ** (FMT.length.frac_bits - FMT.ratio.frac_bits), rtol=2e-5)
+    np.testing.assert_allclose(
+        loaded.ratios(image.length),
+        scene.per_edge("a0") * lengths(scene) / units.size * 2.0 ** (FMT.length.frac_bits - FMT.ratio.frac_bits),
+        rtol=2e-5,
+    )
 
 
 def lengths(scene):
@@ -83,6 +98,7 @@ def test_material_coefficients_come_back():
     loaded = load(scene)
     units = loaded.units
     for material, record, full in zip(scene.materials, loaded.image.materials, units.trial, strict=True):
+
         def number(name, record=record):
             return np.ldexp(record[name] * MANTISSA, -record[f"{name}_shift"])
 
@@ -185,21 +201,41 @@ def pressed(material=SPRING, mass=0.01, load=(0.0, 0.0), velocity=(0.0, -0.1), s
     return objects.scene(m, both, DT, [phase], mass=mass, edge_material=np.arange(len(m.edges)) % len(both))
 
 
-@pytest.mark.parametrize("arguments, message", [
-    ({"velocity": (0.0, -130.0)}, "phases[0].driven must have velocities below 125 m/s, not 130: "
-     "the circuit moves a node by less than a quarter of the object's size in a step"),
-    ({"mass": np.where(np.arange(12) == 4, 1e40, 0.01)},
-     f"mass must give node 4 a factor {HOLDS}shift must be within -128 and 127 (Q8.0), not 136"),
-    ({"material": materials.rheological("stiff", 1e40, 0.5, 2.0), "second": materials.rheological("gum", 1.0, 0, 1.0)},
-     f"materials.gum must have coefficients {HOLDS}force_shift must be within -128 and 127 (Q8.0), not "),
-    ({"load": (1e200, 0.0)}, "the scene must have numbers that the circuit can hold: cannot convert float infinity"),
-    ({"material": materials.rheological_force("paste", 200.0, 0.5, f1=1e-12, f2=1e-11, c_max=20.0, c_min=0.2)},
-     "materials.paste.f1 and f2 must give a branch that the damper table holds "
-     "(a larger f1, a longer way to f2, or c_max nearer to c_min would do): g1 must be at least "),
-    ({"material": materials.rheological_force("glue", 200.0, 1e-3, f1=1.0, f2=1.001, c_max=20.0, c_min=0.02)},
-     "materials.glue.f1 and f2 must give a branch that the damper table holds "
-     "(a larger f1, a longer way to f2, or c_max nearer to c_min would do): sigma must change by less than 1/8 "),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (
+            {"velocity": (0.0, -130.0)},
+            "phases[0].driven must have velocities below 125 m/s, not 130: "
+            "the circuit moves a node by less than a quarter of the object's size in a step",
+        ),
+        (
+            {"mass": np.where(np.arange(12) == 4, 1e40, 0.01)},
+            f"mass must give node 4 a factor {HOLDS}shift must be within -128 and 127 (Q8.0), not 136",
+        ),
+        (
+            {
+                "material": materials.rheological("stiff", 1e40, 0.5, 2.0),
+                "second": materials.rheological("gum", 1.0, 0, 1.0),
+            },
+            f"materials.gum must have coefficients {HOLDS}force_shift must be within -128 and 127 (Q8.0), not ",
+        ),
+        (
+            {"load": (1e200, 0.0)},
+            "the scene must have numbers that the circuit can hold: cannot convert float infinity",
+        ),
+        (
+            {"material": materials.rheological_force("paste", 200.0, 0.5, f1=1e-12, f2=1e-11, c_max=20.0, c_min=0.2)},
+            "materials.paste.f1 and f2 must give a branch that the damper table holds "
+            "(a larger f1, a longer way to f2, or c_max nearer to c_min would do): g1 must be at least ",
+        ),
+        (
+            {"material": materials.rheological_force("glue", 200.0, 1e-3, f1=1.0, f2=1.001, c_max=20.0, c_min=0.02)},
+            "materials.glue.f1 and f2 must give a branch that the damper table holds "
+            "(a larger f1, a longer way to f2, or c_max nearer to c_min would do): sigma must change by less than 1/8 ",
+        ),
+    ],
+)
 def test_refusals(arguments, message):
     with np.errstate(over="ignore"), pytest.raises(InputError) as caught:
         limits.load(pressed(**arguments))

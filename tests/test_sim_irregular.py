@@ -1,4 +1,5 @@
 """Irregular meshes on the integer model against float64: no further apart than on grids."""
+
 import golden_objects as objects
 import numpy as np
 import pytest
@@ -33,9 +34,11 @@ def pressed(name, material, seed):
     velocity[-1] = -up.max() / 6 / 0.1
 
     def of(dt):
-        phases = [objects.phase(body, round(0.1 / dt), low, (high, velocity), name="press"),
-                  objects.phase(body, round(0.05 / dt), low | high, name="hold"),
-                  objects.phase(body, round(0.1 / dt), low, name="release")]
+        phases = [
+            objects.phase(body, round(0.1 / dt), low, (high, velocity), name="press"),
+            objects.phase(body, round(0.05 / dt), low | high, name="hold"),
+            objects.phase(body, round(0.1 / dt), low, name="release"),
+        ]
         return objects.scene(body, MATERIALS[material], dt, phases, body.lumped_mass(DENSITY[body.dim]), every=10)
 
     return of(0.5 * stability.largest_dt(of(1e-3))[0])
@@ -54,8 +57,10 @@ def apart(one):
 def test_bodies(name, material, seed):
     one = pressed(name, material, seed)
     distance, moved = apart(one)
-    print(f"{name} {material}: {len(one.mesh.points)} nodes, {len(one.mesh.edges)} edges, {one.steps} steps, "
-          f"dt {one.dt:.1e}: {distance:.1e}")
+    print(
+        f"{name} {material}: {len(one.mesh.points)} nodes, {len(one.mesh.edges)} edges, {one.steps} steps, "
+        f"dt {one.dt:.1e}: {distance:.1e}"
+    )
     assert moved > 0.05
     assert one.force_dependent == (material == "rheological-force")
     assert distance <= BOUND[one.force_dependent]

@@ -134,11 +134,14 @@ def test_a_port_that_is_not_there_is_named(tmp_path, capsys):
     assert error.count("\n") == 1 and not (out / "trajectory.npz").exists()
 
 
-@pytest.mark.parametrize(("arguments", "message"), [
-    (["--backend", "board"], "--port must say where the board is (make doctor lists the ports of this machine)"),
-    (["--backend", "rtl", "--port", "x"], "--port must go with --backend board, not rtl"),
-    (["--backend", "fixed", "--baud", "9600"], "--baud must go with --backend board, not fixed"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--backend", "board"], "--port must say where the board is (make doctor lists the ports of this machine)"),
+        (["--backend", "rtl", "--port", "x"], "--port must go with --backend board, not rtl"),
+        (["--backend", "fixed", "--baud", "9600"], "--baud must go with --backend board, not fixed"),
+    ],
+)
 def test_options_that_do_not_go_together(arguments, message, tmp_path, capsys):
     scene = str(scene_text.written(tmp_path))
     assert main(["run", scene, *arguments, "--out", str(tmp_path / "out")]) == 2
@@ -169,15 +172,18 @@ def test_an_object_that_is_too_large_is_refused_with_what_would_do(service, tmp_
     assert main(["run", scene, "--backend", "board", "--port", service.url, "--out", str(tmp_path / "out")]) == 2
     assert capsys.readouterr().err == (
         f"error: {scene}: nodes of the object must be at most 32 for this circuit, not 81: choose a smaller object, or "
-        "build a circuit that holds it\n")
+        "build a circuit that holds it\n"
+    )
 
 
 def test_a_circuit_with_another_map_is_refused(service, monkeypatch):
     other = key(Parameters())
     monkeypatch.setattr(driver, "key", lambda parameters: other)
-    message = (f"--port must lead to a circuit with memory map {other.hex()}, as this version has, but the one at "
-               f"{service.url} has {key(SMALL).hex()}: build it anew (make bitstream), or use the version that it was "
-               "built from")
+    message = (
+        f"--port must lead to a circuit with memory map {other.hex()}, as this version has, but the one at "
+        f"{service.url} has {key(SMALL).hex()}: build it anew (make bitstream), or use the version that it was "
+        "built from"
+    )
     with pytest.raises(OtherCircuit, match=re.escape(message)):
         Board.at(service.url)
 
@@ -198,10 +204,13 @@ def test_a_line_that_is_gone_is_one_error(service):
     board.close()
 
 
-@pytest.mark.parametrize(("port", "message"), [
-    ("70000", "argument --port: must be a whole number from 0 to 65535, not '70000'"),
-    ("x", "argument --port: must be a whole number from 0 to 65535, not 'x'"),
-])
+@pytest.mark.parametrize(
+    ("port", "message"),
+    [
+        ("70000", "argument --port: must be a whole number from 0 to 65535, not '70000'"),
+        ("x", "argument --port: must be a whole number from 0 to 65535, not 'x'"),
+    ],
+)
 def test_a_port_to_serve_on_is_a_number(port, message, capsys):
     assert main(["serve", "--port", port]) == 2
     assert capsys.readouterr().err == f"error: {message} (see python -m sim serve --help)\n"
@@ -211,4 +220,5 @@ def test_a_port_that_is_taken_is_not_served_on(service, capsys):
     taken = service.url.rpartition(":")[2]
     assert main(["serve", "--port", taken]) == 2
     assert capsys.readouterr().err.startswith(
-        f"error: --port must be a port of this machine that is free, not {taken}: ")
+        f"error: --port must be a port of this machine that is free, not {taken}: "
+    )

@@ -22,8 +22,9 @@ LONGEST = 40 * ATTEMPTS * TIMEOUT
 """s of the circuit's time in which all is done or has failed: loading an object takes 30 windows at most."""
 NODES = 20
 MAP = Map(SMALL)
-SPARE = [MAP.address(Region.NODE, name, place)
-         for name in ("x_x", "v_y", "load_z") for place in range(NODES, SMALL.nodes)]
+SPARE = [
+    MAP.address(Region.NODE, name, place) for name in ("x_x", "v_y", "load_z") for place in range(NODES, SMALL.nodes)
+]
 WORDS = st.dictionaries(st.sampled_from(SPARE), st.integers(0, (1 << 36) - 1), min_size=1)
 
 
@@ -148,8 +149,10 @@ class Driver(RuleBasedStateMachine):
 
 
 def fuzzed(examples: int, steps: int):
-    run_state_machine_as_test(Driver, settings=settings(
-        max_examples=examples, stateful_step_count=steps, suppress_health_check=list(HealthCheck)))
+    run_state_machine_as_test(
+        Driver,
+        settings=settings(max_examples=examples, stateful_step_count=steps, suppress_health_check=list(HealthCheck)),
+    )
 
 
 def test_whatever_happens_to_it_the_driver_ends_with_the_right_state_or_a_typed_error():

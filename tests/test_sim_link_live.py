@@ -61,8 +61,11 @@ def test_what_is_seen_is_of_one_step_and_a_velocity_is_taken_up(loaded):
     done = 0
     for number, (velocity, x, force) in enumerate(seen):
         for _ in range(100_000):
-            if done and np.array_equal(loaded.positions(model.x)[nodes], x) and np.array_equal(
-                    loaded.forces(model.force)[nodes], force):
+            if (
+                done
+                and np.array_equal(loaded.positions(model.x)[nodes], x)
+                and np.array_equal(loaded.forces(model.force)[nodes], force)
+            ):
                 break
             model.step(1)
             done += 1
@@ -117,7 +120,8 @@ def test_the_readme_says_how_long_an_exchange_takes():
     (one, other) = (line_bytes(nodes) for nodes in (1, 9))
     text = re.sub(r"\s+", " ", readme)
     times = [10 * sum(count) / baud for baud in (1e3, 3e3) for count in (one, other)]  # ms, ten bits a byte
-    assert (f"For one node {one[0]} bytes go out and {one[1]} come back, {times[0]:.2f} ms on the line at 1 Mbaud and "
-            f"{times[2]:.2f} ms at 3; for nine nodes {other[0]} and {other[1]}, {times[1]:.1f} and {times[3]:.1f} ms."
-            ) in text
+    assert (
+        f"For one node {one[0]} bytes go out and {one[1]} come back, {times[0]:.2f} ms on the line at 1 Mbaud and "
+        f"{times[2]:.2f} ms at 3; for nine nodes {other[0]} and {other[1]}, {times[1]:.1f} and {times[3]:.1f} ms."
+    ) in text
     assert f"up to {most_nodes()} nodes" in text

@@ -66,4 +66,3 @@ def test_a_long_run_is_cut_and_a_run_across_is_one_segment():
     places = [3 + (word << 16) for word in range(6)]
     assert list(segments.runs(places)) == [(3, 6, True)]
     assert list(segments.runs([])) == [] and not list(segments.writes([]))
-

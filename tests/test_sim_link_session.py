@@ -82,9 +82,12 @@ def test_a_silent_line_is_given_up(rng):
         def read(self, seconds):
             return b""
 
-    with pytest.raises(NoAnswer, match=r"--port must lead to a circuit that answers, but nowhere was silent for 0.06 s "
-                                       r"\(0 damaged frames came\): it must be loaded \(make flash\) and have the rate "
-                                       "of --baud"):
+    with pytest.raises(
+        NoAnswer,
+        match=r"--port must lead to a circuit that answers, but nowhere was silent for 0.06 s "
+        r"\(0 damaged frames came\): it must be loaded \(make flash\) and have the rate "
+        "of --baud",
+    ):
         Session(Dead(), lambda identity: key(SMALL), timeout=0.01)
 
 

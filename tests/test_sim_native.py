@@ -111,12 +111,15 @@ def test_restart_takes_up_velocities_and_the_changed_image(rng):
     assert_same(*machines)
 
 
-@pytest.mark.parametrize(("what", "spoil", "message"), [
-    ("edges", lambda image: image.edges.__setitem__((3, 0), 12), "edges must be 0 to 11, not 0 to 12"),
-    ("edges", lambda image: image.edges.__setitem__((3, 0), -1), "edges must be 0 to 11, not -1 to 11"),
-    ("material", lambda image: image.edge_material.__setitem__(0, 8), "edge_material must be 0 to 7, not 0 to 8"),
-    ("table", lambda image: image.materials[0].update(table=3), "table must be 0 to 2, not "),
-])
+@pytest.mark.parametrize(
+    ("what", "spoil", "message"),
+    [
+        ("edges", lambda image: image.edges.__setitem__((3, 0), 12), "edges must be 0 to 11, not 0 to 12"),
+        ("edges", lambda image: image.edges.__setitem__((3, 0), -1), "edges must be 0 to 11, not -1 to 11"),
+        ("material", lambda image: image.edge_material.__setitem__(0, 8), "edge_material must be 0 to 7, not 0 to 8"),
+        ("table", lambda image: image.materials[0].update(table=3), "table must be 0 to 2, not "),
+    ],
+)
 def test_an_image_that_points_outside_itself_is_refused(what, spoil, message, rng):
     image = random_image(rng)
     spoil(image)

@@ -15,7 +15,7 @@ from sim import energy, ranges
 from sim.compare import BOUND, compare
 from sim.run import run
 
-PHASE = 'duration = 0.005\n'
+PHASE = "duration = 0.005\n"
 BROUGHT = """\
 duration = 0.005
 
@@ -53,17 +53,29 @@ def test_others_stay_what_they_are(tmp_path):
     assert (gel.c1, clay) == (2.0, scene.materials[1]) and scene.force_dependent
 
 
-@pytest.mark.parametrize(("old", "new", "message"), [
-    ("gel]\npreset = \"rh", "dough]\npreset = \"rh",
-     "phases[1].materials.dough must not be there: the keys known here are gel"),
-    ("c2 = 40.0\n", "c2 = 40.0\nregion = { nodes = [1] }\n",
-     "phases[1].materials.gel.region must not be there: a material is another one where it is"),
-    ("c2 = 40.0\n", "", "phases[1].materials.gel.c2 must be given"),
-    ("c2 = 40.0\n", "c2 = -1\n", "phases[1].materials.gel.c2 must be a finite number above 0, not -1"),
-    ("k = 80.0", "k = 8e9", "dt must be at most"),
-    ("duration = 0.01\n", BROUGHT.replace("0.005", "0.01") + "[[phases]]\nduration = 1.0\n",
-     "phases[0].materials must not be there: the object begins with those of materials"),
-])
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            'gel]\npreset = "rh',
+            'dough]\npreset = "rh',
+            "phases[1].materials.dough must not be there: the keys known here are gel",
+        ),
+        (
+            "c2 = 40.0\n",
+            "c2 = 40.0\nregion = { nodes = [1] }\n",
+            "phases[1].materials.gel.region must not be there: a material is another one where it is",
+        ),
+        ("c2 = 40.0\n", "", "phases[1].materials.gel.c2 must be given"),
+        ("c2 = 40.0\n", "c2 = -1\n", "phases[1].materials.gel.c2 must be a finite number above 0, not -1"),
+        ("k = 80.0", "k = 8e9", "dt must be at most"),
+        (
+            "duration = 0.01\n",
+            BROUGHT.replace("0.005", "0.01") + "[[phases]]\nduration = 1.0\n",
+            "phases[0].materials must not be there: the object begins with those of materials",
+        ),
+    ],
+)
 def test_what_is_wrong_with_them_is_named(tmp_path, old, new, message):
     text = scene_text.changed(scene_text.SCENE, PHASE, BROUGHT)
     with pytest.raises(InputError) as error:
@@ -91,8 +103,16 @@ def test_the_force_does_not_jump(other):
     assert np.abs(after - before).max() < 1e-9 * np.abs(before).max()
 
 
-@pytest.mark.parametrize("names", [("viscoelastic", "rheological"), ("rheological", "viscoelastic"),
-                                   ("rheological", "rheological-force"), ("plastic", "rheological")], ids="-".join)
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("viscoelastic", "rheological"),
+        ("rheological", "viscoelastic"),
+        ("rheological", "rheological-force"),
+        ("plastic", "rheological"),
+    ],
+    ids="-".join,
+)
 def test_float_and_integers_become_the_same(names):
     scene = switching(*names)
     float64, fixed = run(scene, "float").trajectory, run(scene, "fixed").trajectory

@@ -1,4 +1,5 @@
 """sim.ranges: what the quantities of the datapath take of their formats, seen without changing a bit."""
+
 import json
 from dataclasses import replace
 
@@ -28,6 +29,7 @@ def watched_by_hand():
             for number in value if isinstance(value, list) else [value]:
                 if isinstance(number, QArray):
                     names[name] = number.fmt.name
+
     loaded = limits.load(scene)
     machine = Machine(loaded.image, watch)
     for phase in scene.phases:

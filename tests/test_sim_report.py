@@ -1,4 +1,5 @@
 """sim.report: the page holds the numbers of compare.json and all that it draws, in one file."""
+
 import base64
 import json
 from dataclasses import replace
@@ -16,8 +17,19 @@ from sim.face import watched
 from sim.report import pack, style, surface
 from sim.report.page import brief, least, percent, si, slug
 
-SHOWN = {"dim", "nodes", "edges", "steps", "lanes", "rtl_equals_fixed", "max_dx_rel", "bound", "final_dx_rel", "max_da",
-         "saturations"}
+SHOWN = {
+    "dim",
+    "nodes",
+    "edges",
+    "steps",
+    "lanes",
+    "rtl_equals_fixed",
+    "max_dx_rel",
+    "bound",
+    "final_dx_rel",
+    "max_da",
+    "saturations",
+}
 SCENES = FLAT, SOLID, WEIGHT
 
 
@@ -123,10 +135,21 @@ def test_a_scene_that_fails_says_so(tmp_path, entries, comparisons):
 
 
 def test_a_board_that_was_timed_tells_its_step(tmp_path, entries, comparisons):
-    boards = [{"board": "new", "timed": False},
-              {"board": "small", "timed": True, "lanes": 1, "updates": 1, "clock_mhz": 100.0, "fits": False},
-              {"board": "large", "timed": True, "lanes": 4, "updates": 1, "clock_mhz": 120.0, "fits": True,
-               "cycles_per_step": 540, "step_us": 4.5, "real_time": 55.6}]
+    boards = [
+        {"board": "new", "timed": False},
+        {"board": "small", "timed": True, "lanes": 1, "updates": 1, "clock_mhz": 100.0, "fits": False},
+        {
+            "board": "large",
+            "timed": True,
+            "lanes": 4,
+            "updates": 1,
+            "clock_mhz": 120.0,
+            "fits": True,
+            "cycles_per_step": 540,
+            "step_us": 4.5,
+            "real_time": 55.6,
+        },
+    ]
     report.write([replace(report.Section.of(comparisons[1]), entry=entries[1] | {"boards": boards})], tmp_path)
     text = Page((tmp_path / "index.html").read_text()).text
     assert "does not fit" in text and "120.0 MHz" in text and "4.50 µs" in text and "56 ×" in text
@@ -192,23 +215,47 @@ def test_colours_run_from_dark_to_light_or_through_grey():
         assert (np.diff(light) > 0).all() if name != "force" else np.argmax(light) == 10
 
 
-@pytest.mark.parametrize("value, text", [
-    (True, "yes"), (False, "no"), (None, "–"), (0.0, "0"), (3.21e-6, "3.2e-6"), (0.25, "0.25"), (12.345, "12.3"),
-    (7, "7"), (1234567, "1\u202f234\u202f567")])
+@pytest.mark.parametrize(
+    "value, text",
+    [
+        (True, "yes"),
+        (False, "no"),
+        (None, "–"),
+        (0.0, "0"),
+        (3.21e-6, "3.2e-6"),
+        (0.25, "0.25"),
+        (12.345, "12.3"),
+        (7, "7"),
+        (1234567, "1\u202f234\u202f567"),
+    ],
+)
 def test_brief(value, text):
     assert brief(value) == text
 
 
-@pytest.mark.parametrize("value, unit, text", [
-    (0.01234, "N", "12.3 mN"), (-2e-7, "m", "−200 nm"), (1.0, "J", "1 J"), (0.0, "J", "0 J"), (0.75, "", "0.75"),
-    (0.99996, "N", "1000 mN"), (54321.0, "N", "54300 N")])
+@pytest.mark.parametrize(
+    "value, unit, text",
+    [
+        (0.01234, "N", "12.3 mN"),
+        (-2e-7, "m", "−200 nm"),
+        (1.0, "J", "1 J"),
+        (0.0, "J", "0 J"),
+        (0.75, "", "0.75"),
+        (0.99996, "N", "1000 mN"),
+        (54321.0, "N", "54300 N"),
+    ],
+)
 def test_si(value, unit, text):
     assert si(value, unit) == text
 
 
 def test_the_least_headroom_is_that_of_what_depends_on_the_scene():
-    ranges = [{"unit": "", "headroom_bits": 0.0}, {"unit": "N", "headroom_bits": 2.0},
-              {"unit": "m", "headroom_bits": 1.5}, {"unit": "m/s", "headroom_bits": None}]
+    ranges = [
+        {"unit": "", "headroom_bits": 0.0},
+        {"unit": "N", "headroom_bits": 2.0},
+        {"unit": "m", "headroom_bits": 1.5},
+        {"unit": "m/s", "headroom_bits": None},
+    ]
     assert least(ranges) == {"unit": "m", "headroom_bits": 1.5}
 
 

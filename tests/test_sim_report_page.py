@@ -1,4 +1,5 @@
 """The report's page in a browser: it opens from disk, plays, turns, and shows what was computed."""
+
 import json
 import re
 import shutil
@@ -128,8 +129,9 @@ def test_at_the_end_it_stops_and_begins_again(opened):
     assert str(last) == section.locator("[data-role=frame]").get_attribute("max")
     section.locator("[data-role=speed]").select_option("1")
     opened.page.keyboard.press(" ")
-    opened.page.wait_for_function("([name, last]) => Number(document.getElementById(name).dataset.frame) === last",
-                                  arg=[FLAT_ID, last])
+    opened.page.wait_for_function(
+        "([name, last]) => Number(document.getElementById(name).dataset.frame) === last", arg=[FLAT_ID, last]
+    )
     assert section.locator("[data-role=play]").text_content() == "Play"
     opened.page.keyboard.press(",")
     assert opened.frame(FLAT_ID) == last - 1
@@ -216,26 +218,35 @@ def test_what_is_drawn_is_what_was_computed(opened, comparisons):
         opened.section(scene_id)
         scene, float64, circuit = comparison.scene, comparison.float64.trajectory, comparison.circuit.trajectory
         for frame in (0, len(circuit.t) // 2, len(circuit.t) - 1):
-            drawn = [opened.page.evaluate(f"([id, frame]) => [...recordings.get(id).{what}]", [scene_id, frame])
-                     for what in ("positions(frame, 0)", "apartOf(frame)")]
+            drawn = [
+                opened.page.evaluate(f"([id, frame]) => [...recordings.get(id).{what}]", [scene_id, frame])
+                for what in ("positions(frame, 0)", "apartOf(frame)")
+            ]
             np.testing.assert_allclose(drawn[0], float64.x[frame].ravel(), atol=scene.size / 65535)
             apart = np.linalg.norm(circuit.x[frame] - float64.x[frame], axis=1)
             np.testing.assert_allclose(drawn[1], apart, atol=np.abs(circuit.x - float64.x).max() / 32767)
-            shades = opened.page.evaluate("([id, frame]) => [...recordings.get(id).shades(frame, 'ratio', 'circuit')]",
-                                          [scene_id, frame])
-            low, high = (opened.page.evaluate(f"id => recordings.get(id).ratio.circuit.{end}", scene_id)
-                         for end in ("low", "high"))
-            np.testing.assert_allclose(low + (high - low) * np.array(shades), circuit.a[frame].clip(low, high),
-                                       atol=(high - low) / 255)
+            shades = opened.page.evaluate(
+                "([id, frame]) => [...recordings.get(id).shades(frame, 'ratio', 'circuit')]", [scene_id, frame]
+            )
+            low, high = (
+                opened.page.evaluate(f"id => recordings.get(id).ratio.circuit.{end}", scene_id)
+                for end in ("low", "high")
+            )
+            np.testing.assert_allclose(
+                low + (high - low) * np.array(shades), circuit.a[frame].clip(low, high), atol=(high - low) / 255
+            )
 
 
 def test_the_numbers_on_it_are_those_of_the_json(opened, folder):
     entries = json.loads((folder / "compare.json").read_text())
     for entry in entries:
         section = opened.section(slug(entry["scene"]))
-        shown = opened.page.evaluate("""scene => [...document.querySelectorAll("[data-key]")]
+        shown = opened.page.evaluate(
+            """scene => [...document.querySelectorAll("[data-key]")]
             .filter(part => part.closest("[data-scene]").dataset.scene === scene)
-            .map(part => [part.dataset.key, JSON.parse(part.dataset.value)])""", entry["scene"])
+            .map(part => [part.dataset.key, JSON.parse(part.dataset.value)])""",
+            entry["scene"],
+        )
         assert {key for key, _ in shown} >= {"max_dx_rel", "bound", "saturations", "cycles", "occupancy", "lanes"}
         assert all(value == entry[key] for key, value in shown)
         section.locator(".view canvas").focus()

@@ -124,8 +124,9 @@ def test_a_run_that_is_stopped_ends_with_a_step_and_goes_on_with_the_same_bits(r
     loaded = load(scene("2-D", rng, 30))
     model, machine, map_ = NativeMachine(loaded.image), simulated(loaded.image, circuit(2)), Map(circuit(2))
     ends, circuit_ = Wavefront(loaded.image, circuit(2)).run(20), machine.circuit
-    run, stop, done, cycles = (map_.address(Region.CONTROL, 0, getattr(Control, name))
-                               for name in ("RUN", "STOP", "STEPS_DONE", "CYCLES"))
+    run, stop, done, cycles = (
+        map_.address(Region.CONTROL, 0, getattr(Control, name)) for name in ("RUN", "STOP", "STEPS_DONE", "CYCLES")
+    )
     seen = set()
     for under_way in [0, 1, 2, 3, *rng.integers(0, ends[4], 200).tolist()]:
         circuit_.write([(run, 1000)])
@@ -154,15 +155,21 @@ def test_what_the_circuit_refuses_is_an_error_here(rng, simulated):
         machine.circuit.read([0xFFFF])
 
 
-@pytest.mark.parametrize(("smaller", "message"), [
-    (dict(nodes=11), "nodes of the object must be at most 11 for this circuit, not 12"),
-    (dict(edges=59), "edges of the object must be at most 59 for this circuit, not 60"),
-    (dict(lanes=4, edges=55), "edges of the object must be at most 56 for this circuit, not 60"),
-    (dict(materials=7), "materials of the object must be at most 7 for this circuit, not 8"),
-    (dict(tables=2), "tables of the object must be at most 2 for this circuit, not 3"),
-    (dict(formats=Formats(16, 34)), r"formats of the object must be the circuit's Formats\(operand=16, state=34\), "
-                                    r"not Formats\(operand=18, state=36\)"),
-])
+@pytest.mark.parametrize(
+    ("smaller", "message"),
+    [
+        (dict(nodes=11), "nodes of the object must be at most 11 for this circuit, not 12"),
+        (dict(edges=59), "edges of the object must be at most 59 for this circuit, not 60"),
+        (dict(lanes=4, edges=55), "edges of the object must be at most 56 for this circuit, not 60"),
+        (dict(materials=7), "materials of the object must be at most 7 for this circuit, not 8"),
+        (dict(tables=2), "tables of the object must be at most 2 for this circuit, not 3"),
+        (
+            dict(formats=Formats(16, 34)),
+            r"formats of the object must be the circuit's Formats\(operand=16, state=34\), "
+            r"not Formats\(operand=18, state=36\)",
+        ),
+    ],
+)
 def test_an_object_that_is_too_large_is_refused_by_name(smaller, message, rng):
     room = dict(lanes=1, nodes=12, edges=60, materials=8, tables=3)
     Program(random_image(rng), Parameters(**room))

@@ -1,4 +1,5 @@
 """sim.run: one face for float64, integer model and circuit; the frames it keeps, and what it refuses."""
+
 from pathlib import Path
 
 import golden_objects as objects
@@ -57,8 +58,9 @@ def test_raw_frames_are_the_trajectory_in_the_scenes_order():
     np.testing.assert_array_equal(x * result.units.size + result.units.centre, result.trajectory.x)
     v = np.ldexp(result.raw.v[:, :, :2].astype(float), -formats.velocity.frac_bits)
     np.testing.assert_array_equal(v * result.units.velocity, result.trajectory.v)
-    np.testing.assert_array_equal(np.ldexp(result.raw.ratio.astype(float), -formats.ratio.frac_bits),
-                                  result.trajectory.a)
+    np.testing.assert_array_equal(
+        np.ldexp(result.raw.ratio.astype(float), -formats.ratio.frac_bits), result.trajectory.a
+    )
 
 
 def test_same_means_every_bit(rng):
@@ -84,8 +86,15 @@ def test_held_nodes_move_as_prescribed():
 def test_reactions():
     """None before the first step; afterwards 0 on free nodes; in the end they carry the weight."""
     m = MESHES[2]
-    scene = objects.scene(m, materials.viscoelastic("gel", 500.0, 2.0), DT, [objects.phase(m, 3000, objects.bottom(m))],
-                          mass=0.01, gravity=[0, -9.81], every=1000)
+    scene = objects.scene(
+        m,
+        materials.viscoelastic("gel", 500.0, 2.0),
+        DT,
+        [objects.phase(m, 3000, objects.bottom(m))],
+        mass=0.01,
+        gravity=[0, -9.81],
+        every=1000,
+    )
     reaction, held = run(scene, "fixed").trajectory.reaction, scene.phases[0].held
     assert np.isnan(reaction[0, held]).all()
     assert (reaction[0, ~held] == 0).all() and (reaction[1:, ~held] == 0).all()
@@ -105,8 +114,13 @@ def test_any_order_of_edges_gives_the_same_bits(dim, rng):
 
 def test_a_saturation_is_counted_by_name():
     m = MESHES[2]
-    scene = objects.scene(m, MATERIALS["plastic"], DT, [objects.phase(m, 60, objects.bottom(m),
-                                                                      load=(objects.top(m), (1e4, 0)))], mass=0.01)
+    scene = objects.scene(
+        m,
+        MATERIALS["plastic"],
+        DT,
+        [objects.phase(m, 60, objects.bottom(m), load=(objects.top(m), (1e4, 0)))],
+        mass=0.01,
+    )
     fixed = run(scene, "fixed")
     assert fixed.faults.keys() & {"velocity", "displacement", "position", "accumulator"}
     assert fixed.saturations == sum(fixed.faults.values()) > 0
@@ -167,20 +181,25 @@ def test_progress(backend):
     assert 200 in told and {250, 270} <= set(told)
 
 
-@pytest.mark.parametrize("arguments, message", [
-    ({"backend": "gpu"}, "backend must be one of float, fixed, rtl, board, not 'gpu'"),
-    ({"backend": "board"}, "link must be given for the backend board"),
-    ({"backend": "rtl", "link": object()}, "link must go with the backend board, not rtl"),
-    ({"backend": "fixed", "engine": "fast"}, "engine must be one of native, numpy, not 'fast'"),
-    ({"backend": "rtl", "lanes": 0}, "lanes must be a whole number from 1 to 8, not 0"),
-    ({"backend": "rtl", "lanes": 2.0}, "lanes must be a whole number from 1 to 8, not 2.0"),
-    ({"backend": "rtl", "updates": 3}, "updates must be a whole number from 1 to 2, not 3"),
-    ({"backend": "fixed", "waves": "w.fst"},
-     "waves must go with the backend rtl, not fixed: only the circuit has signals"),
-    ({"backend": "rtl", "waves": Path("w.png")}, "waves must be a file ending in .vcd or .fst, not w.png"),
-    ({"backend": "fixed", "edge_order": [0, 1]}, "edge_order must be a permutation of 0 to 22"),
-    ({"backend": "fixed", "edge_order": [0] * 23}, "edge_order must be a permutation of 0 to 22"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ({"backend": "gpu"}, "backend must be one of float, fixed, rtl, board, not 'gpu'"),
+        ({"backend": "board"}, "link must be given for the backend board"),
+        ({"backend": "rtl", "link": object()}, "link must go with the backend board, not rtl"),
+        ({"backend": "fixed", "engine": "fast"}, "engine must be one of native, numpy, not 'fast'"),
+        ({"backend": "rtl", "lanes": 0}, "lanes must be a whole number from 1 to 8, not 0"),
+        ({"backend": "rtl", "lanes": 2.0}, "lanes must be a whole number from 1 to 8, not 2.0"),
+        ({"backend": "rtl", "updates": 3}, "updates must be a whole number from 1 to 2, not 3"),
+        (
+            {"backend": "fixed", "waves": "w.fst"},
+            "waves must go with the backend rtl, not fixed: only the circuit has signals",
+        ),
+        ({"backend": "rtl", "waves": Path("w.png")}, "waves must be a file ending in .vcd or .fst, not w.png"),
+        ({"backend": "fixed", "edge_order": [0, 1]}, "edge_order must be a permutation of 0 to 22"),
+        ({"backend": "fixed", "edge_order": [0] * 23}, "edge_order must be a permutation of 0 to 22"),
+    ],
+)
 def test_refusals(arguments, message):
     scene = block()
     assert len(scene.mesh.edges) == 23

@@ -1,4 +1,5 @@
 """The compiled float model is the golden model, and its step times are taken as they are described."""
+
 import os
 import re
 from dataclasses import replace
@@ -21,8 +22,11 @@ MIXED = DOUGH, MATERIALS["viscoelastic"], MATERIALS["plastic"]
 def differences(model, golden):
     """Of positions by the object's size, of velocities by the largest, of ratios."""
     largest = np.abs(golden.v).max()
-    return (np.abs(model.x - golden.x).max() / golden.scene.size, np.abs(model.v - golden.v).max() / largest,
-            np.abs(model.a - golden.a).max())
+    return (
+        np.abs(model.x - golden.x).max() / golden.scene.size,
+        np.abs(model.v - golden.v).max() / largest,
+        np.abs(model.a - golden.a).max(),
+    )
 
 
 @pytest.mark.parametrize("name", meshes.MESHES)
@@ -48,8 +52,15 @@ def test_phases_loads_bounds_and_mixed_materials(dim, dtype, allowed):
     load = np.zeros(mesh.points.shape)
     load[objects.top(mesh), 0] = 0.01
     phases[2] = replace(phases[2], load=load)
-    scene = objects.scene(mesh, MIXED, DT, phases, mass=0.01 + 0.001 * (np.arange(len(mesh.points)) % 3),
-                          gravity=[0.3] * dim, edge_material=np.arange(len(mesh.edges)) % 3)
+    scene = objects.scene(
+        mesh,
+        MIXED,
+        DT,
+        phases,
+        mass=0.01 + 0.001 * (np.arange(len(mesh.points)) % 3),
+        gravity=[0.3] * dim,
+        edge_material=np.arange(len(mesh.edges)) % 3,
+    )
     stability.check(scene)
     golden, model = Model(scene), CompiledModel(scene, dtype)
     for phase in scene.phases:
@@ -96,11 +107,16 @@ def test_no_two_threads_write_to_one_cache_line(dtype):
     np.testing.assert_array_equal(rows, np.pad(values, ((0, 0), (0, 15))))
 
 
-@pytest.mark.parametrize("change, message", [
-    ({"threads": 0}, "threads must be a whole number of at least 1, not 0"),
-    ({"scene": block("rheological-force")}, "materials must have linear dampers for the compiled float model, "
-                                            "not ones that depend on the force"),
-])
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        ({"threads": 0}, "threads must be a whole number of at least 1, not 0"),
+        (
+            {"scene": block("rheological-force")},
+            "materials must have linear dampers for the compiled float model, not ones that depend on the force",
+        ),
+    ],
+)
 def test_refusals(change, message):
     with pytest.raises(InputError, match=f"^{re.escape(message)}$"):
         CompiledModel(**{"scene": meshes.scene("3x3"), **change})

@@ -1,4 +1,5 @@
 """python -m sim bench: what it writes and shows, what it refuses, and where the circuit's cycles come from."""
+
 import json
 import sys
 
@@ -9,14 +10,32 @@ from sim import cycles, steptime
 from sim.__main__ import main
 from sim.speed import bench, meshes, table, timing
 
-KEYS = ["mesh", "lanes", "updates", "nodes", "edges", "clock_mhz", "cycles_per_step", "occupancy", "step_us",
-        "edge_evals_per_s", "software"]
+KEYS = [
+    "mesh",
+    "lanes",
+    "updates",
+    "nodes",
+    "edges",
+    "clock_mhz",
+    "cycles_per_step",
+    "occupancy",
+    "step_us",
+    "edge_evals_per_s",
+    "software",
+]
 
 
 def software(scene, steps, progress):
     """Stands in for `sim.speed.timing.software`."""
-    times = {"threads": 2, "steps": steps, "step_us": 20.0, "p999_us": 30.0, "max_us": 4000.0, "clock_us": 0.02,
-             "running": 0.99}
+    times = {
+        "threads": 2,
+        "steps": steps,
+        "step_us": 20.0,
+        "p999_us": 30.0,
+        "max_us": 4000.0,
+        "clock_us": 0.02,
+        "running": 0.99,
+    }
     for name in timing.SOFTWARE:
         progress(name)
     return dict.fromkeys(timing.SOFTWARE, times)
@@ -26,8 +45,9 @@ def software(scene, steps, progress):
 def quick(monkeypatch):
     """Nothing is timed."""
     monkeypatch.setattr(timing, "software", software)
-    monkeypatch.setattr(cycles, "cycles_per_step",
-                        lambda scene, lanes, updates: 4 * len(scene.mesh.edges) // lanes + 250)
+    monkeypatch.setattr(
+        cycles, "cycles_per_step", lambda scene, lanes, updates: 4 * len(scene.mesh.edges) // lanes + 250
+    )
 
 
 def test_entry():
@@ -44,7 +64,8 @@ def test_writes_entries_and_shows_two_tables(quick, tmp_path, capsys):
     assert main(["bench", "--meshes", "9x9", "5x5x5", "--steps", "7", "--clock", "100", "--out", str(out)]) == 0
     entries = json.loads(out.read_text())
     assert [(e["mesh"], e["lanes"], e["updates"]) for e in entries] == [
-        (mesh, *circuit) for mesh in ("9x9", "5x5x5") for circuit in bench.CIRCUITS]
+        (mesh, *circuit) for mesh in ("9x9", "5x5x5") for circuit in bench.CIRCUITS
+    ]
     assert all(list(e) == KEYS for e in entries)
     assert [p.name for p in out.parent.iterdir()] == ["bench.json"]
     said, err = capsys.readouterr()
@@ -73,7 +94,8 @@ def test_a_machine_that_others_use_is_noticed(quick, tmp_path, capsys, monkeypat
     monkeypatch.setattr(timing, "software", busy)
     assert main(["bench", "--meshes", "9x9", "--out", str(tmp_path / "bench.json")]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == (
-        "warning: other programs used the machine, the software's times are too long: Numba-all had 60% of its cores")
+        "warning: other programs used the machine, the software's times are too long: Numba-all had 60% of its cores"
+    )
 
 
 def test_progress_on_a_terminal(quick, tmp_path, capsys, monkeypatch):
@@ -83,15 +105,25 @@ def test_progress_on_a_terminal(quick, tmp_path, capsys, monkeypatch):
     assert shown == ["", *(f"3x3: {name} ..." for name in timing.SOFTWARE.values()), ""]
 
 
-@pytest.mark.parametrize("arguments, message", [
-    (["--steps", "0"], "argument --steps: must be a whole number of at least 1, not '0' "
-                       "(see python -m sim bench --help)"),
-    (["--clock", "0"], "argument --clock: must be a finite number above 0, not '0' (see python -m sim bench --help)"),
-    (["--clock", "fast"], "argument --clock: must be a finite number above 0, not 'fast' "
-                          "(see python -m sim bench --help)"),
-    (["--meshes", "9"], "meshes must be numbers of nodes like 9x9 or 5x5x5, not '9'"),
-    (["--meshes", "1x9"], "nodes must be 2 whole numbers of at least 2, not [1, 9]"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (
+            ["--steps", "0"],
+            "argument --steps: must be a whole number of at least 1, not '0' (see python -m sim bench --help)",
+        ),
+        (
+            ["--clock", "0"],
+            "argument --clock: must be a finite number above 0, not '0' (see python -m sim bench --help)",
+        ),
+        (
+            ["--clock", "fast"],
+            "argument --clock: must be a finite number above 0, not 'fast' (see python -m sim bench --help)",
+        ),
+        (["--meshes", "9"], "meshes must be numbers of nodes like 9x9 or 5x5x5, not '9'"),
+        (["--meshes", "1x9"], "nodes must be 2 whole numbers of at least 2, not [1, 9]"),
+    ],
+)
 def test_refusals(quick, arguments, message, tmp_path, capsys):
     assert main(["bench", *arguments, "--out", str(tmp_path / "bench.json")]) == 2
     said = capsys.readouterr()
@@ -107,12 +139,17 @@ def test_out_is_refused_before_anything_is_timed(quick, out, reason, tmp_path, c
     assert main(["bench", "--out", str(tmp_path / out)]) == 2
     reasons = reason, "File exists"
     assert capsys.readouterr().err in [
-        f"error: --out must be a file that can be written, not {tmp_path / out}: {reason}\n" for reason in reasons]
+        f"error: --out must be a file that can be written, not {tmp_path / out}: {reason}\n" for reason in reasons
+    ]
 
 
-@pytest.mark.parametrize("lanes, updates, message", [
-    (1, 3, "updates must be a whole number from 1 to 2, not 3"),
-    (9, 1, "lanes must be a whole number from 1 to 8, not 9")])
+@pytest.mark.parametrize(
+    "lanes, updates, message",
+    [
+        (1, 3, "updates must be a whole number from 1 to 2, not 3"),
+        (9, 1, "lanes must be a whole number from 1 to 8, not 9"),
+    ],
+)
 def test_circuits_that_do_not_exist(lanes, updates, message):
     with pytest.raises(InputError, match=f"^{message}$"):
         cycles.cycles_per_step(meshes.scene("9x9"), lanes, updates)

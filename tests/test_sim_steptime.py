@@ -1,4 +1,5 @@
 """sim.steptime: how long a step takes, from a run's own count and on boards whose clock is known."""
+
 import json
 import re
 
@@ -14,11 +15,30 @@ from sim.cycles import Wavefront
 from sim.run import Result
 
 TIMING = {
-    "board": "ulx3s-85f", "lanes": 2, "updates": 1, "nodes": 64, "edges": 256, "materials": 2, "tables": 1, "grade": 6,
-    "seeds": [1], "fmax_mhz": [90.0], "fmax_min": 90.0, "fmax_median": 90.0,
-    "limits_mhz": {"multiplier": 200.0, "block_ram": 200.0}, "clock_mhz": 90.0, "lut": 1, "ff": 1, "multipliers": 1,
-    "block_rams": 1, "lut_ram": 0, "frame": {"lut": 0, "ff": 0, "multipliers": 0, "block_rams": 0, "lut_ram": 0},
-    "critical_path": [], "tools": {}, "sha256": ""}
+    "board": "ulx3s-85f",
+    "lanes": 2,
+    "updates": 1,
+    "nodes": 64,
+    "edges": 256,
+    "materials": 2,
+    "tables": 1,
+    "grade": 6,
+    "seeds": [1],
+    "fmax_mhz": [90.0],
+    "fmax_min": 90.0,
+    "fmax_median": 90.0,
+    "limits_mhz": {"multiplier": 200.0, "block_ram": 200.0},
+    "clock_mhz": 90.0,
+    "lut": 1,
+    "ff": 1,
+    "multipliers": 1,
+    "block_rams": 1,
+    "lut_ram": 0,
+    "frame": {"lut": 0, "ff": 0, "multipliers": 0, "block_rams": 0, "lut_ram": 0},
+    "critical_path": [],
+    "tools": {},
+    "sha256": "",
+}
 
 
 def test_occupancy_is_the_edges_of_all_stages_by_lanes_and_cycles():
@@ -39,9 +59,18 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     parameters = Parameters(**{name: TIMING[name] for name in Parameters.RANGES})
     cycles = Wavefront(limits.load(scene).image, parameters).per_step()
     assert cycles >= RK4.stages * len(scene.mesh.edges) / 2
-    assert found == {"board": "ulx3s-85f", "timed": True, "lanes": 2, "updates": 1, "axes": 3, "clock_mhz": 90.0,
-                     "fits": True, "cycles_per_step": cycles, "step_us": cycles / 90.0,
-                     "real_time": pytest.approx(scene.dt / (cycles / 90e6))}
+    assert found == {
+        "board": "ulx3s-85f",
+        "timed": True,
+        "lanes": 2,
+        "updates": 1,
+        "axes": 3,
+        "clock_mhz": 90.0,
+        "fits": True,
+        "cycles_per_step": cycles,
+        "step_us": cycles / 90.0,
+        "real_time": pytest.approx(scene.dt / (cycles / 90e6)),
+    }
 
 
 def test_a_board_whose_updater_takes_an_axis_at_a_time_says_so_and_takes_longer(tmp_path):
@@ -57,8 +86,10 @@ def test_a_board_whose_updater_takes_an_axis_at_a_time_says_so_and_takes_longer(
 def test_the_clock_of_a_board_is_that_of_its_result(tmp_path):
     (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING))
     assert steptime.clock("ulx3s-85f", tmp_path) == 90.0
-    with pytest.raises(InputError, match=re.escape("--clock must be given, as ulx3s-25f has not been timed "
-                                                   "(make timing BOARD=ulx3s-25f)")):
+    with pytest.raises(
+        InputError,
+        match=re.escape("--clock must be given, as ulx3s-25f has not been timed (make timing BOARD=ulx3s-25f)"),
+    ):
         steptime.clock("ulx3s-25f", tmp_path)
 
 

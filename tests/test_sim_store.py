@@ -1,4 +1,5 @@
 """What `python -m sim run` leaves is all that is needed to have the run again."""
+
 from dataclasses import astuple
 from math import inf
 
@@ -58,16 +59,21 @@ def test_a_folder_that_is_no_run_is_refused(kept, missing):
 
 
 def test_no_folder_is_refused(tmp_path):
-    refused(tmp_path / "x", f"RUN must be a folder that `python -m sim run` left, not {tmp_path / 'x'}: "
-            "it has no summary.json")
+    refused(
+        tmp_path / "x",
+        f"RUN must be a folder that `python -m sim run` left, not {tmp_path / 'x'}: it has no summary.json",
+    )
 
 
-@pytest.mark.parametrize(("name", "text", "error"), [
-    ("scene.npz", b"PK\x03\x04 no more", "BadZipFile"),
-    ("trajectory.npz", b"", "EOFError"),
-    ("summary.json", b"{", "JSONDecodeError"),
-    ("summary.json", b"3", "TypeError"),
-])
+@pytest.mark.parametrize(
+    ("name", "text", "error"),
+    [
+        ("scene.npz", b"PK\x03\x04 no more", "BadZipFile"),
+        ("trajectory.npz", b"", "EOFError"),
+        ("summary.json", b"{", "JSONDecodeError"),
+        ("summary.json", b"3", "TypeError"),
+    ],
+)
 def test_a_damaged_file_is_named(kept, name, text, error):
     folder, _ = kept
     (folder / name).write_bytes(text)
@@ -80,15 +86,19 @@ def test_an_archive_of_something_else_is_named(kept):
     refused(folder, f"{folder / 'scene.npz'} must be as `python -m sim run` wrote it: it cannot be read (KeyError)")
 
 
-@pytest.mark.parametrize(("old", "new"), [("dt = 1e-4", "dt = 5e-5"), ("nodes = [3, 3]", "nodes = [3, 5]"),
-                                          ('"block"', '"other"')])
+@pytest.mark.parametrize(
+    ("old", "new"), [("dt = 1e-4", "dt = 5e-5"), ("nodes = [3, 3]", "nodes = [3, 5]"), ('"block"', '"other"')]
+)
 def test_files_of_two_runs_are_refused(tmp_path, old, new):
     for name, text in (("one", SCENE), ("two", changed(SCENE, old, new))):
         assert main(["run", str(written(tmp_path, text)), "--backend", "float", "--out", str(tmp_path / name)]) == 0
     folder = tmp_path / "one"
     (folder / "scene.npz").write_bytes((tmp_path / "two" / "scene.npz").read_bytes())
-    refused(folder, f"RUN must be a folder with the files of one run, not {folder}: "
-            "scene.npz, trajectory.npz and summary.json differ in what they are of")
+    refused(
+        folder,
+        f"RUN must be a folder with the files of one run, not {folder}: "
+        "scene.npz, trajectory.npz and summary.json differ in what they are of",
+    )
 
 
 def test_a_summary_says_that_its_run_is_complete(kept, monkeypatch):

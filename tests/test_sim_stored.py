@@ -1,4 +1,5 @@
 """sim.stored: runs taken up from their folders bit by bit; what can't be of a run, or not of one scene, is refused."""
+
 import json
 import re
 from dataclasses import replace
@@ -33,7 +34,12 @@ def test_a_run_is_the_same_when_it_is_taken_up(tmp_path, scene, backend):
     assert again.name == scene.name
     np.testing.assert_array_equal(found.trajectory.x, result.trajectory.x)
     assert (found.backend, found.faults, found.cycles, found.lanes, found.updates) == (
-        result.backend, result.faults, result.cycles, result.lanes, result.updates)
+        result.backend,
+        result.faults,
+        result.cycles,
+        result.lanes,
+        result.updates,
+    )
     assert found.raw is None if backend == "float" else found.raw.same(result.raw)
 
 
@@ -61,14 +67,17 @@ def shifted(arrays):
     arrays["x"][1] += 1e-13
 
 
-@pytest.mark.parametrize("spoil, reason", [
-    (lambda folder: summary(folder, backend="gpu"), "its backend is 'gpu'"),
-    (lambda folder: summary(folder, seconds="long"), "summary.json has no seconds that could be one"),
-    (lambda folder: summary(folder, cycles=1.5), "summary.json has no cycles that could be one"),
-    (lambda folder: trajectory(folder, cut), "a in trajectory.npz must be 8 x 23 finite numbers"),
-    (lambda folder: trajectory(folder, blank), "x in trajectory.npz must be 8 x 12 x 2 finite numbers"),
-    (lambda folder: trajectory(folder, shifted), "the state in trajectory.npz is not one of a circuit's integers"),
-])
+@pytest.mark.parametrize(
+    "spoil, reason",
+    [
+        (lambda folder: summary(folder, backend="gpu"), "its backend is 'gpu'"),
+        (lambda folder: summary(folder, seconds="long"), "summary.json has no seconds that could be one"),
+        (lambda folder: summary(folder, cycles=1.5), "summary.json has no cycles that could be one"),
+        (lambda folder: trajectory(folder, cut), "a in trajectory.npz must be 8 x 23 finite numbers"),
+        (lambda folder: trajectory(folder, blank), "x in trajectory.npz must be 8 x 12 x 2 finite numbers"),
+        (lambda folder: trajectory(folder, shifted), "the state in trajectory.npz is not one of a circuit's integers"),
+    ],
+)
 def test_a_folder_that_cannot_be_of_a_run_is_refused(tmp_path, spoil, reason):
     folder = tmp_path / "run"
     kept(folder)
@@ -99,19 +108,21 @@ def refused(folders, message):
 def test_two_runs_of_a_scene_on_one_backend_are_refused(tmp_path):
     for name in "ab":
         kept(tmp_path / name)
-    refused([tmp_path / "a", tmp_path / "b"],
-            "one of each backend for a scene, not two on fixed of 'loaf': {a} and {b}")
+    refused(
+        [tmp_path / "a", tmp_path / "b"], "one of each backend for a scene, not two on fixed of 'loaf': {a} and {b}"
+    )
 
 
 def test_two_scenes_of_a_name_are_refused(tmp_path):
     kept(tmp_path / "a")
     kept(tmp_path / "b", replace(SCENE, mass=SCENE.mass * 1.01), "float")
-    refused([tmp_path / "a", tmp_path / "b"],
-            "of one scene where the name is one, not of two that are called 'loaf': {a} and {b}")
+    refused(
+        [tmp_path / "a", tmp_path / "b"],
+        "of one scene where the name is one, not of two that are called 'loaf': {a} and {b}",
+    )
 
 
 def test_a_scene_without_integers_is_refused(tmp_path):
     kept(tmp_path / "a", SOLID)
     kept(tmp_path / "b", SCENE, "float")
-    refused([tmp_path / "a", tmp_path / "b"],
-            "one on fixed, rtl or board for the scene 'loaf' as well, not only {b}")
+    refused([tmp_path / "a", tmp_path / "b"], "one on fixed, rtl or board for the scene 'loaf' as well, not only {b}")

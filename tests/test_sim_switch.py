@@ -25,8 +25,11 @@ def pressed(name, steps=60):
     return loaded, machine
 
 
-@pytest.mark.parametrize("names", [("viscoelastic", "rheological"), ("rheological", "viscoelastic"),
-                                   ("rheological", "rheological-force")], ids="-".join)
+@pytest.mark.parametrize(
+    "names",
+    [("viscoelastic", "rheological"), ("rheological", "viscoelastic"), ("rheological", "rheological-force")],
+    ids="-".join,
+)
 def test_a_switch_keeps_the_force_and_goes_on_as_the_model_does(names):
     loaded, machine = pressed(names[0])
     unswitched = NativeMachine(dataclasses.replace(loaded.image, x=machine.x, v=machine.v, ratio=machine.ratio))
@@ -59,6 +62,9 @@ def test_a_material_that_needs_a_smaller_time_step_is_refused():
 
 def test_a_material_beyond_the_units_of_the_run_is_refused():
     loaded = load(block(rheological("down", 0.5, 0.001, 5.0)))
-    with pytest.raises(InputError, match=r"materials.dough must have forces below .* N, the full scale of this run, "
-                                         r"not up to .* N: begin a run with it"):
+    with pytest.raises(
+        InputError,
+        match=r"materials.dough must have forces below .* N, the full scale of this run, "
+        r"not up to .* N: begin a run with it",
+    ):
         switch(loaded, None, (rheological("dough", 200.0, 0.5, 20.0),))

@@ -75,10 +75,13 @@ def test_verilog_that_does_not_compile_is_an_error_and_leaves_nothing(shim, tmp_
     assert [path.suffix for path in (tmp_path / "made").iterdir()] == [".lock"]
 
 
-@pytest.mark.parametrize(("missing", "message"), [
-    ("c++", r"c\+\+ must be installed \(on Debian: apt install g\+\+\), but is not"),
-    ("perl", r"perl must be installed \(on Debian: apt install perl\), but is not"),
-])
+@pytest.mark.parametrize(
+    ("missing", "message"),
+    [
+        ("c++", r"c\+\+ must be installed \(on Debian: apt install g\+\+\), but is not"),
+        ("perl", r"perl must be installed \(on Debian: apt install perl\), but is not"),
+    ],
+)
 def test_a_missing_program_is_named(missing, message, shim, tmp_path, monkeypatch):
     programs = tmp_path / "bin"
     programs.mkdir()

@@ -15,8 +15,15 @@ from . import tools
 from .result import Build
 
 
-def build(name: str, board: Board, parameters: Parameters, folder: Path, shown: Callable[[str], None],
-          *, allow_missed: bool = False) -> Build:
+def build(
+    name: str,
+    board: Board,
+    parameters: Parameters,
+    folder: Path,
+    shown: Callable[[str], None],
+    *,
+    allow_missed: bool = False,
+) -> Build:
     """Everything that a `Build` holds; ``shown`` is told what is being done.
 
     The files of an earlier build that would be written again are removed first. A circuit that doesn't fit is not

@@ -29,8 +29,10 @@ class Build(Circuit, forbid_unknown_fields=True, kw_only=True):
         if self.fmax_mhz is None or self.fmax_mhz >= self.clock_mhz:
             return ""
         late = 1000 / self.fmax_mhz - 1000 / self.clock_mhz
-        return (f"the clock of {self.board} must be at most {self.fmax_mhz:.1f} MHz, not {self.clock_mhz:g} MHz: its "
-                f"longest path is {late:.2f} ns too long")
+        return (
+            f"the clock of {self.board} must be at most {self.fmax_mhz:.1f} MHz, not {self.clock_mhz:g} MHz: its "
+            f"longest path is {late:.2f} ns too long"
+        )
 
     def state(self, board: Board) -> str:
         """What may be said of it."""
@@ -55,8 +57,7 @@ def table(build: Build, board: Board) -> str:
     return "\n".join(lines)
 
 
-HEAD = f"| board | device | {SIZES} | clock | Fmax " \
-       "| LUT | FF | multipliers | block RAMs | state | run on hardware |"
+HEAD = f"| board | device | {SIZES} | clock | Fmax | LUT | FF | multipliers | block RAMs | state | run on hardware |"
 
 
 def published(kept: dict[str, Build]) -> str:

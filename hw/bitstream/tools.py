@@ -78,8 +78,19 @@ def synthesise(board: Board, verilog: str, folder: Path) -> dict:
 
 def place_and_route(board: Board, clock_mhz: float, folder: Path) -> dict:
     """nextpnr's report about the netlist in the folder. A clock that it misses is no failure."""
-    common = ("--json", f"{NAME}.json", "--report", f"{NAME}.report.json", "--log", f"{NAME}.log",
-              "--seed", str(SEED), "--timing-allow-fail", "--freq", f"{clock_mhz:g}")
+    common = (
+        "--json",
+        f"{NAME}.json",
+        "--report",
+        f"{NAME}.report.json",
+        "--log",
+        f"{NAME}.log",
+        "--seed",
+        str(SEED),
+        "--timing-allow-fail",
+        "--freq",
+        f"{clock_mhz:g}",
+    )
     if board.family == "ecp5":
         device = f"--{board.device}", "--package", board.package, "--speed", str(board.grade)
         own = "--lpf", f"{NAME}.lpf", "--textcfg", f"{NAME}.config", "--placer", "static"

@@ -20,8 +20,10 @@ class Gowin:
         if max(map(len, operands)) > WIDTH:
             return None
         m = Module()
-        inside = [Signal(operand.shape(), name=f"{name}_in", reset_less=True)
-                  for name, operand in zip("ab", operands, strict=True)]
+        inside = [
+            Signal(operand.shape(), name=f"{name}_in", reset_less=True)
+            for name, operand in zip("ab", operands, strict=True)
+        ]
         m.d.sync += [register.eq(operand) for register, operand in zip(inside, operands, strict=True)]
         a, b = (_extended(register, bits) for register, bits in zip(inside, (A_BITS, B_BITS), strict=True))
         out = Signal(PRODUCT_BITS, name="out")

@@ -57,8 +57,9 @@ class Identity:
     def of(cls, p: Parameters, key: bytes, clock_hz: int, bit_cycles: int) -> Identity:
         low, high = (int.from_bytes(part, "little") for part in (key[:PART], key[PART:]))
         sizes = (getattr(p, name) for name in p.RANGES)
-        return cls(MAGIC, PROTOCOL, VERSION, low, high, *sizes, p.formats.operand, p.formats.state, clock_hz,
-                   bit_cycles)
+        return cls(
+            MAGIC, PROTOCOL, VERSION, low, high, *sizes, p.formats.operand, p.formats.state, clock_hz, bit_cycles
+        )
 
     @classmethod
     def read(cls, items: list[int]) -> Identity:
@@ -77,8 +78,9 @@ class Identity:
 
     def parameters(self) -> Parameters:
         """The circuit's, but for the family of its device. Raises ValueError if there can't be such a circuit."""
-        return Parameters(**{name: getattr(self, name) for name in Parameters.RANGES},
-                          formats=Formats(self.operand, self.state))
+        return Parameters(
+            **{name: getattr(self, name) for name in Parameters.RANGES}, formats=Formats(self.operand, self.state)
+        )
 
 
 assert tuple(field.name for field in fields(Identity)) == tuple(name for name, _ in IDENTITY_TEXT)

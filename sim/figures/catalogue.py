@@ -32,15 +32,27 @@ def _pressed(material: str, what: str) -> Entry:
 
 
 FIGURES = {
-    "figure-1": Entry("Single edges and blocks of the three materials, pressed, held and let go",
-                      (*(EDGE + name for name in MATERIALS), *MATERIALS), "curves", reading.press),
+    "figure-1": Entry(
+        "Single edges and blocks of the three materials, pressed, held and let go",
+        (*(EDGE + name for name in MATERIALS), *MATERIALS),
+        "curves",
+        reading.press,
+    ),
     "figure-3": _pressed("viscoelastic", "returns to its shape"),
     "figure-4": _pressed("plastic", "stays as it was pressed"),
     "figure-5": _pressed("rheological", "comes back part of the way"),
-    "figure-6": Entry("Blocks of the three materials in three dimensions: pressing the top makes the sides bulge",
-                      tuple(f"{name}-3d" for name in MATERIALS), "solid", _solid),
-    "gravity": Entry("A block under its own weight, with a linear and with a force-dependent damper (section 6)",
-                     ("gravity-collapses", "gravity-holds"), "gravity", lambda pair: [reading.fall(pair)]),
+    "figure-6": Entry(
+        "Blocks of the three materials in three dimensions: pressing the top makes the sides bulge",
+        tuple(f"{name}-3d" for name in MATERIALS),
+        "solid",
+        _solid,
+    ),
+    "gravity": Entry(
+        "A block under its own weight, with a linear and with a force-dependent damper (section 6)",
+        ("gravity-collapses", "gravity-holds"),
+        "gravity",
+        lambda pair: [reading.fall(pair)],
+    ),
 }
 
 

@@ -18,8 +18,14 @@ from sim.figures.runs import EDGE, Pair
 from sim.report import style
 
 SHOWN, PRESSED = (-0.27, 0.6), (-0.27, 0.06)  # s around the release: of the way, of the force
-CLOSED = {"linestyle": "none", "marker": "D", "markersize": 4.2, "markerfacecolor": "white",
-          "markeredgecolor": paper.INK, "markeredgewidth": 0.9}
+CLOSED = {
+    "linestyle": "none",
+    "marker": "D",
+    "markersize": 4.2,
+    "markerfacecolor": "white",
+    "markeredgecolor": paper.INK,
+    "markeredgewidth": 0.9,
+}
 
 
 def draw(pairs: list[Pair]) -> Figure:
@@ -38,10 +44,20 @@ def draw(pairs: list[Pair]) -> Figure:
                 axes.set_xlabel("time since the release (s)")
         labels(way, kind)
     handles = [Line2D([], [], label=name, **line) for name, line in paper.MATERIALS.items()]
-    handles += [Line2D([], [], color=paper.PALE, label="float64, beneath", **paper.FLOAT),
-                Line2D([], [], label="closed form", **CLOSED)]
-    figure.legend(handles=handles, loc="lower center", ncols=5, frameon=False, fontsize=7.5, handlelength=3.4,
-                  columnspacing=1.5, borderaxespad=0.2)
+    handles += [
+        Line2D([], [], color=paper.PALE, label="float64, beneath", **paper.FLOAT),
+        Line2D([], [], label="closed form", **CLOSED),
+    ]
+    figure.legend(
+        handles=handles,
+        loc="lower center",
+        ncols=5,
+        frameon=False,
+        fontsize=7.5,
+        handlelength=3.4,
+        columnspacing=1.5,
+        borderaxespad=0.2,
+    )
     return figure
 
 
@@ -61,7 +77,7 @@ class Dot:
 
     def __init__(self, axes, t: np.ndarray, values: np.ndarray, colour: str):
         self._t, self._values = t, values
-        self._dot, = axes.plot([], [], "o", markersize=5.5, color=colour, markeredgecolor="white", zorder=5)
+        (self._dot,) = axes.plot([], [], "o", markersize=5.5, color=colour, markeredgecolor="white", zorder=5)
 
     def show(self, t: float) -> None:
         """Go to a time; outside of the curve there is none."""
@@ -103,9 +119,16 @@ def labels(axes, pairs: list[Pair]) -> None:
     """What stays and what came back, beside the end of each curve."""
     for pair in pairs:
         back, residual = reading.press(pair)
-        axes.annotate(f"{material(pair)}\nresidual {paper.mm(residual.circuit)}\nbounce-back {paper.mm(back.circuit)}",
-                      (SHOWN[1], residual.circuit * 1e3), (7, 0), textcoords="offset points", va="center",
-                      fontsize=7.2, color=paper.MATERIALS[material(pair)]["color"], annotation_clip=False)
+        axes.annotate(
+            f"{material(pair)}\nresidual {paper.mm(residual.circuit)}\nbounce-back {paper.mm(back.circuit)}",
+            (SHOWN[1], residual.circuit * 1e3),
+            (7, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=7.2,
+            color=paper.MATERIALS[material(pair)]["color"],
+            annotation_clip=False,
+        )
         if residual.against == "closed form":
             axes.plot(since_release(pair)[-1], residual.expected * 1e3, zorder=4, clip_on=False, **CLOSED)
 
@@ -125,8 +148,10 @@ def film(pairs: list[Pair]) -> Film:
             bodies.append((pair, (Parts if edge else Body)(axes, pair, *() if edge else (STRAIN,))))
             axes.set_title(material(pair), fontsize=8.5, color=paper.MATERIALS[material(pair)]["color"], pad=2)
     way.set_xlabel("time since the release (s)", labelpad=1)
-    for height, text in ((4.1, "single edge: spring and damper (wide), then the second damper (thin)"),
-                         (2.17, f"block: {len(pair.scene.mesh.edges)} such edges, coloured by strain")):
+    for height, text in (
+        (4.1, "single edge: spring and damper (wide), then the second damper (thin)"),
+        (2.17, f"block: {len(pair.scene.mesh.edges)} such edges, coloured by strain"),
+    ):
         figure.text(0.1 / 7.2, height / 4.3, text, fontsize=8)
     clock = figure.text(4.5 / 7.2, 0.08 / 4.3, "", fontsize=9)
     return Film(figure, moving(bodies, dots, clock), *SHOWN)
@@ -134,6 +159,7 @@ def film(pairs: list[Pair]) -> Film:
 
 def moving(bodies, dots, clock) -> Callable[[float], None]:
     """What makes drawings, each with its pair of runs, dots on curves and a clock show a time since the release (s)."""
+
     def show(t: float) -> None:
         for pair, body in bodies:
             body.show(pair.frame(t + pair.circuit.trajectory.t[pair.released]))

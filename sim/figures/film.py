@@ -43,8 +43,15 @@ def save(film: Film, path: Path, progress: Callable[[int], object] | None = None
             progress(number)
     first, *others = (each.quantize(palette=palette(), dither=Image.Dither.NONE) for each in pictures)
     with replaced(path) as file:
-        first.save(file, format="GIF", save_all=True, append_images=others, loop=0, optimize=False,
-                   duration=[EVERY] * len(others) + [PAUSE])
+        first.save(
+            file,
+            format="GIF",
+            save_all=True,
+            append_images=others,
+            loop=0,
+            optimize=False,
+            duration=[EVERY] * len(others) + [PAUSE],
+        )
 
 
 def picture(film: Film) -> Image.Image:

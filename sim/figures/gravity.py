@@ -17,8 +17,10 @@ X, Y = (-9, 111), (-3, 104)  # mm, around the block
 SCALE = 0.0125  # inches per mm
 TIMES = 0, 0.2, 0.8  # s
 DAMPERS = {"gravity-collapses": "linear", "gravity-holds": "force-dependent"}
-LINES = {"gravity-collapses": {"color": paper.RED, "linestyle": "-"},
-         "gravity-holds": {"color": paper.BLUE, "linestyle": (0, (6, 1.5))}}
+LINES = {
+    "gravity-collapses": {"color": paper.RED, "linestyle": "-"},
+    "gravity-holds": {"color": paper.BLUE, "linestyle": (0, (6, 1.5))},
+}
 
 
 def draw(pairs: list[Pair]) -> Figure:
@@ -27,8 +29,15 @@ def draw(pairs: list[Pair]) -> Figure:
     figure = Figure((paper.WIDTH, row * len(pairs) + 0.32))
     for number, pair in enumerate(pairs):
         bottom, left = 0.3 + row * (len(pairs) - 1 - number), 0.33
-        figure.text(0.2 / paper.WIDTH, (bottom + 50 * SCALE) / figure.get_figheight(),
-                    f"{DAMPERS[pair.scene.name]}\ndamper", rotation=90, va="center", ha="center", fontsize=8.5)
+        figure.text(
+            0.2 / paper.WIDTH,
+            (bottom + 50 * SCALE) / figure.get_figheight(),
+            f"{DAMPERS[pair.scene.name]}\ndamper",
+            rotation=90,
+            va="center",
+            ha="center",
+            fontsize=8.5,
+        )
         for time in TIMES:
             frame = pair.frame(time)
             axes = paper.object_axes(figure, left, bottom, X, Y, SCALE)
@@ -38,9 +47,12 @@ def draw(pairs: list[Pair]) -> Figure:
     left, width = left + 0.15, paper.WIDTH - left - 0.15
     RATIO.bar(figure, paper.place(figure, left, bottom + row + 0.05, 0.1, 1.2))
     heights(paper.place(figure, left + 0.28, bottom + 0.22, width - 0.4, 1.05), pairs)
-    paper.note(figure, f"Mesh and colours: circuit. Circles: float64, at most "
-                       f"{power(max(pair.difference() for pair in pairs))} of the block's size away at any time. "
-                       "Dashed: initial outline.")
+    paper.note(
+        figure,
+        f"Mesh and colours: circuit. Circles: float64, at most "
+        f"{power(max(pair.difference() for pair in pairs))} of the block's size away at any time. "
+        "Dashed: initial outline.",
+    )
     return figure
 
 
@@ -55,9 +67,15 @@ def heights(axes, pairs: list[Pair]) -> list[Dot]:
         dots.append(Dot(axes, circuit.t, pair.face.height(circuit) * 1e3, line["color"]))
         lost = reading.fall(pair)
         high = pair.face.height(circuit)[-1] * 1e3
-        axes.annotate(f"{DAMPERS[pair.scene.name]}: {paper.mm(lost.circuit)} lost", (circuit.t[-1], high),
-                      (0, 6 if high > 85 else -14), textcoords="offset points", ha="right", fontsize=7.2,
-                      color=line["color"])
+        axes.annotate(
+            f"{DAMPERS[pair.scene.name]}: {paper.mm(lost.circuit)} lost",
+            (circuit.t[-1], high),
+            (0, 6 if high > 85 else -14),
+            textcoords="offset points",
+            ha="right",
+            fontsize=7.2,
+            color=line["color"],
+        )
     style.quiet(axes)
     axes.set(xlim=(0, circuit.t[-1]), ylim=(60, 108), xlabel="time (s)")
     axes.xaxis.set_major_locator(MultipleLocator(0.2))

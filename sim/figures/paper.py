@@ -9,9 +9,19 @@ SCALE = 0.0143  # inches per mm of all flat objects
 INK, PALE = "#222222", "#6b6b6b"
 SETTINGS = {
     "font.family": "DejaVu Sans",  # comes with matplotlib
-    "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8, "xtick.labelsize": 7.5, "ytick.labelsize": 7.5,
-    "axes.linewidth": 0.7, "lines.linewidth": 1.4, "axes.edgecolor": INK, "text.color": INK, "axes.labelcolor": INK,
-    "svg.hashsalt": "rheogate", "svg.fonttype": "path", "path.simplify": False,
+    "font.size": 8,
+    "axes.titlesize": 8.5,
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "axes.linewidth": 0.7,
+    "lines.linewidth": 1.4,
+    "axes.edgecolor": INK,
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "svg.hashsalt": "rheogate",
+    "svg.fonttype": "path",
+    "path.simplify": False,
 }
 
 BLUE, GREEN, RED, SKY = "#0072b2", "#009e73", "#d55e00", "#56b4e9"  # of Okabe and Ito
@@ -24,8 +34,14 @@ MATERIALS = {
 }
 OUTLINE = {"colors": INK, "linewidths": 0.8, "linestyles": [(0, (4, 3))]}
 MESH = {"edgecolors": INK, "linewidths": 0.45, "snap": False}
-NODES = {"linestyle": "none", "marker": "o", "markersize": 2.6, "markerfacecolor": "white", "markeredgecolor": INK,
-         "markeredgewidth": 0.55}
+NODES = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 2.6,
+    "markerfacecolor": "white",
+    "markeredgecolor": INK,
+    "markeredgewidth": 0.55,
+}
 FLOAT = {"linewidth": 4.2, "alpha": 0.3, "linestyle": "-", "solid_capstyle": "round"}
 """float64 under a curve of the circuit, in its colour."""
 
@@ -68,8 +84,19 @@ def minus(text: str) -> str:
 def arrow(axes, x: float, low: float, high: float, text: str) -> None:
     """A dimension between two heights, its text beside it; none where there is no room for an arrow."""
     if high - low > 2:
-        axes.annotate("", (x, high), (x, low), arrowprops={
-            "arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.9, "color": INK, "mutation_scale": 7})
+        axes.annotate(
+            "",
+            (x, high),
+            (x, low),
+            arrowprops={
+                "arrowstyle": "<->",
+                "shrinkA": 0,
+                "shrinkB": 0,
+                "linewidth": 0.9,
+                "color": INK,
+                "mutation_scale": 7,
+            },
+        )
     axes.annotate(text, (x, (low + high) / 2), (6, 0), textcoords="offset points", va="center", fontsize=7.5)
 
 

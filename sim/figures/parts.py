@@ -17,12 +17,17 @@ class Parts:
         self._pair = pair
         top = pair.scene.mesh.points[1, 1] * 1e3
         for height in (0, top):
-            axes.plot([MIDDLE - 25, MIDDLE + 25], [height] * 2, color=paper.INK, linewidth=0.8,
-                      linestyle="-" if height == 0 else (0, (4, 3)))
-        self._voigt, = axes.plot([], [], **VOIGT)
-        self._damper, = axes.plot([], [], **DAMPER)
-        self._joint, = axes.plot([], [], color=paper.INK, linewidth=1.4)
-        self._ends, = axes.plot([], [], **paper.NODES | {"markersize": 6})
+            axes.plot(
+                [MIDDLE - 25, MIDDLE + 25],
+                [height] * 2,
+                color=paper.INK,
+                linewidth=0.8,
+                linestyle="-" if height == 0 else (0, (4, 3)),
+            )
+        (self._voigt,) = axes.plot([], [], **VOIGT)
+        (self._damper,) = axes.plot([], [], **DAMPER)
+        (self._joint,) = axes.plot([], [], color=paper.INK, linewidth=1.4)
+        (self._ends,) = axes.plot([], [], **paper.NODES | {"markersize": 6})
         self.show(0)
 
     def show(self, frame: int) -> None:

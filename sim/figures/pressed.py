@@ -17,7 +17,7 @@ ROOM = 90  # mm beside the last drawing, for what was measured
 
 def draw(pairs: list[Pair]) -> Figure:
     """The three states of a block, all coloured by strain on one scale and drawn in one scale."""
-    pair, = pairs
+    (pair,) = pairs
     figure = Figure((paper.WIDTH, 2.15))
     frames = [0, pair.released, len(pair.circuit.trajectory.t) - 1]
     left = 0.0
@@ -31,8 +31,11 @@ def draw(pairs: list[Pair]) -> Figure:
             paper.scale_bar(axes, 0, -6)
     measured(axes, pair)
     STRAIN.bar(figure, paper.place(figure, paper.WIDTH - 0.52, 0.36, 0.1, 1.5))
-    paper.note(figure, f"{pair.scene.name.capitalize()}. Mesh and colours: circuit. Circles: float64, at most "
-                       f"{power(pair.difference())} of the block's size away at any time. Dashed: initial outline.")
+    paper.note(
+        figure,
+        f"{pair.scene.name.capitalize()}. Mesh and colours: circuit. Circles: float64, at most "
+        f"{power(pair.difference())} of the block's size away at any time. Dashed: initial outline.",
+    )
     return figure
 
 
@@ -49,7 +52,7 @@ def measured(axes, pair: Pair) -> None:
 
 def film(pairs: list[Pair]) -> Film:
     """The block in motion; beside it how deep it is pressed, and with which force."""
-    pair, = pairs
+    (pair,) = pairs
     figure = Figure((6.4, 2.75))
     axes = paper.object_axes(figure, 0.05, 0.1, X, (Y[0], 112), 0.0205)  # it swings
     body = Body(axes, pair, STRAIN)
@@ -61,8 +64,10 @@ def film(pairs: list[Pair]) -> Film:
     force.set_title("force (N)", loc="left", pad=3)
     force.set_xlabel("time since the release (s)")
     force.xaxis.labelpad = 1
-    dots = [curves.over_time(axes, pair, quantity) for axes, quantity in
-            ((way, curves.deformation(pair)), (force, pair.face.force))]
+    dots = [
+        curves.over_time(axes, pair, quantity)
+        for axes, quantity in ((way, curves.deformation(pair)), (force, pair.face.force))
+    ]
     for axes in (way, force):
         curves.time_axis(axes, curves.SHOWN)
     offset = pair.circuit.trajectory.t[pair.released]

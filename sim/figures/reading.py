@@ -45,8 +45,10 @@ class Reading:
     def shortcoming(self) -> str:
         """What keeps it from passing."""
         above = f", and above 0, not {self.circuit:.3g} {self.unit}" if self.positive else ""
-        return (f"{self.scene}: {self.quantity} must be within {self.bound:g} of {self.against}, "
-                f"not {self.difference:.3g} off{above}")
+        return (
+            f"{self.scene}: {self.quantity} must be within {self.bound:g} of {self.against}, "
+            f"not {self.difference:.3g} off{above}"
+        )
 
     def entry(self) -> dict:
         return asdict(self) | {"difference": self.difference, "passes": self.passes}
@@ -68,8 +70,10 @@ def press(pair: Pair) -> list[Reading]:
         scale = abs(expected) if abs(expected) > SMALL * expected_depth else expected_depth
         return Reading(pair.scene.name, quantity, "m", circuit, float64, against, expected, scale, RECOVERY)
 
-    return [reading("bounce-back", back, back64, expected),
-            reading("residual", depth - back, depth64 - back64, expected_depth - expected)]
+    return [
+        reading("bounce-back", back, back64, expected),
+        reading("residual", depth - back, depth64 - back64, expected_depth - expected),
+    ]
 
 
 def deformation(pair: Pair, run: Trajectory) -> np.ndarray:
@@ -99,8 +103,9 @@ def side_middles(scene: Scene) -> np.ndarray:
 def bulge(pair: Pair) -> Reading:
     """The mean bulge of the four sides (m) while the block is held pressed."""
     circuit, float64 = (float(bulges(pair.scene, x[pair.released]).mean()) for x in pair.x)
-    return Reading(pair.scene.name, "side bulge", "m", circuit, float64, "float64", float64, pair.scene.size, BULGE,
-                   positive=True)
+    return Reading(
+        pair.scene.name, "side bulge", "m", circuit, float64, "float64", float64, pair.scene.size, BULGE, positive=True
+    )
 
 
 def bulge_over_time(pair: Pair, run: Trajectory) -> np.ndarray:
@@ -111,11 +116,29 @@ def bulge_over_time(pair: Pair, run: Trajectory) -> np.ndarray:
 def fall(pair: Pair) -> Reading:
     """The height (m) that a block has lost under its own weight in the end."""
     circuit, float64 = (float(deformation(pair, run)[-1]) for run in pair.trajectories)
-    return Reading(pair.scene.name, "height lost", "m", circuit, float64, "float64", float64, pair.scene.size,
-                   BOUND[pair.scene.force_dependent])
+    return Reading(
+        pair.scene.name,
+        "height lost",
+        "m",
+        circuit,
+        float64,
+        "float64",
+        float64,
+        pair.scene.size,
+        BOUND[pair.scene.force_dependent],
+    )
 
 
 def apart(pair: Pair) -> Reading:
     """The largest distance between a node in circuit and in float64, in any frame, as part of the object's size."""
-    return Reading(pair.scene.name, "max dx", "size", pair.difference(), 0.0, "float64", 0.0, 1.0,
-                   BOUND[pair.scene.force_dependent])
+    return Reading(
+        pair.scene.name,
+        "max dx",
+        "size",
+        pair.difference(),
+        0.0,
+        "float64",
+        0.0,
+        1.0,
+        BOUND[pair.scene.force_dependent],
+    )

@@ -23,12 +23,16 @@ def scene(name: str, material: Material) -> Scene:
     mesh = Mesh(np.array([[0.0, 0.0], [0.0, LENGTH]]), np.empty((0, 3), np.int64), np.array([[0, 1]]))
     foot, head, none = np.array([True, False]), np.array([False, True]), np.zeros(2, bool)
     still, down = np.zeros((2, 2)), np.array([[0.0, 0.0], [0.0, -DEPTH / (PRESS * DT)]])
-    phases = (Phase("press", PRESS, foot, down, head, still), Phase("hold", HOLD, foot | head, still, none, still),
-              Phase("release", RELEASE, foot, still, none, still))
+    phases = (
+        Phase("press", PRESS, foot, down, head, still),
+        Phase("hold", HOLD, foot | head, still, none, still),
+        Phase("release", RELEASE, foot, still, none, still),
+    )
     steps = PRESS + HOLD + RELEASE
     frames = np.union1d(np.arange(0, steps + 1, EVERY), np.cumsum([phase.steps for phase in phases]))
-    edge = Scene(name, "", None, mesh, (material,), np.zeros(1, np.int64), np.full(2, MASS), np.zeros(2), DT, phases,
-                 frames)
+    edge = Scene(
+        name, "", None, mesh, (material,), np.zeros(1, np.int64), np.full(2, MASS), np.zeros(2), DT, phases, frames
+    )
     stability.check(edge)
     return edge
 

@@ -30,8 +30,9 @@ def draw(pairs: list[Pair]) -> Figure:
     for row, pair in enumerate(pairs):
         bottom, left = BELOW + ROW * (len(pairs) - 1 - row), 0.2
         middle = (bottom + (y[1] - y[0]) * SCALE / 2) / height
-        figure.text(0.1 / paper.WIDTH, middle, curves.material(pair), rotation=90, va="center", ha="center",
-                    fontsize=8.5)
+        figure.text(
+            0.1 / paper.WIDTH, middle, curves.material(pair), rotation=90, va="center", ha="center", fontsize=8.5
+        )
         end = len(pair.circuit.trajectory.t) - 1
         for frame, title in ((0, "initial"), (pair.released, "deformed"), (end, "stationary")):
             axes = paper.object_axes(figure, left, bottom, x, y, SCALE)
@@ -43,8 +44,11 @@ def draw(pairs: list[Pair]) -> Figure:
         plan(paper.object_axes(figure, left, bottom, PLAN, PLAN, PLAN_SCALE), pair)
     STRAIN.bar(figure, paper.place(figure, paper.WIDTH - 0.5, height / 2 - 1, 0.1, 2))
     apart = power(max(pair.difference() for pair in pairs))
-    paper.note(figure, f"Mesh and colours: circuit. Circles: float64, at most {apart} of the block's size away at any "
-                       "time. Dashed: initial outline.")
+    paper.note(
+        figure,
+        f"Mesh and colours: circuit. Circles: float64, at most {apart} of the block's size away at any "
+        "time. Dashed: initial outline.",
+    )
     return figure
 
 
@@ -59,14 +63,26 @@ def plan(axes, pair: Pair) -> None:
     """The nodes around the block's middle as it is held pressed, from above, with the bulge of its sides."""
     nodes = ring(pair.scene)
     circuit, float64 = (x[pair.released, nodes, :2] * 1e3 for x in pair.x)
-    axes.fill(*(pair.scene.mesh.points[nodes, :2] * 1e3).T, facecolor="none", edgecolor=paper.INK, linewidth=0.8,
-              linestyle=(0, (4, 3)))
+    axes.fill(
+        *(pair.scene.mesh.points[nodes, :2] * 1e3).T,
+        facecolor="none",
+        edgecolor=paper.INK,
+        linewidth=0.8,
+        linestyle=(0, (4, 3)),
+    )
     axes.fill(*circuit.T, facecolor="#dcebf4", edgecolor=paper.INK, linewidth=1.2, zorder=0)
     axes.plot(*float64.T, **paper.NODES)
     read = reading.bulge(pair)
-    axes.text(50, 50, f"sides bulge by\n{paper.mm(read.circuit)} ({100 * read.circuit / read.scale:.1f} %)\n"
-              f"float64: {paper.mm(read.float64)}", va="center",
-              ha="center", fontsize=7.5, linespacing=1.4)
+    axes.text(
+        50,
+        50,
+        f"sides bulge by\n{paper.mm(read.circuit)} ({100 * read.circuit / read.scale:.1f} %)\n"
+        f"float64: {paper.mm(read.float64)}",
+        va="center",
+        ha="center",
+        fontsize=7.5,
+        linespacing=1.4,
+    )
     paper.title(axes, f"half height, {pair.circuit.trajectory.t[pair.released]:.3g} s")
 
 

@@ -11,10 +11,21 @@ def print_readings(entries: dict[str, dict]) -> None:
     """One line a number, on stdout, and each once: lengths in mm, differences as part of the number or of the size."""
     rows = [HEAD]
     for read in (read for entry in entries.values() for read in entry["readings"]):
-        shown = (f"{round(1e3 * read[key], 4) + 0:.4f} mm" if read["unit"] == "m" else power(read[key])
-                 for key in ("circuit", "expected"))
-        rows.append((read["scene"], read["quantity"], *shown, read["against"], power(read["difference"]),
-                     power(read["bound"]), "passes" if read["passes"] else "FAILS"))
+        shown = (
+            f"{round(1e3 * read[key], 4) + 0:.4f} mm" if read["unit"] == "m" else power(read[key])
+            for key in ("circuit", "expected")
+        )
+        rows.append(
+            (
+                read["scene"],
+                read["quantity"],
+                *shown,
+                read["against"],
+                power(read["difference"]),
+                power(read["bound"]),
+                "passes" if read["passes"] else "FAILS",
+            )
+        )
     rows = list(dict.fromkeys(rows))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:

@@ -149,5 +149,6 @@ def _key(url: str, identity: Identity) -> bytes:
     if identity.key != own:
         raise OtherCircuit(
             f"--port must lead to a circuit with memory map {own.hex()}, as this version has, but the one at {url} has "
-            f"{identity.key.hex()}: build it anew (make bitstream), or use the version that it was built from")
+            f"{identity.key.hex()}: build it anew (make bitstream), or use the version that it was built from"
+        )
     return own

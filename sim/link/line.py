@@ -27,8 +27,10 @@ class SerialLine:
         try:
             self._port = serial.serial_for_url(url, baudrate=baud, timeout=0, write_timeout=5)
         except (serial.SerialException, ValueError, OSError) as error:
-            raise LineBroken(f"--port must be a port that can be opened, not {url}: {_reason(error)} "
-                             "(make doctor lists the ports of this machine)") from None
+            raise LineBroken(
+                f"--port must be a port that can be opened, not {url}: {_reason(error)} "
+                "(make doctor lists the ports of this machine)"
+            ) from None
 
     def write(self, data: bytes) -> None:
         self._checked(self._port.write, data)

@@ -64,8 +64,10 @@ class Live:
         top = 1 << self._board.parameters.formats.state - 1
         raw = ((np.array(words) ^ top) - top).reshape(len(self._nodes), 2, AXES)
         scene, units, fmt = self._loaded.scene, self._loaded.units, self._loaded.image.formats
-        x, force = (np.ldexp(raw[:, n, : scene.dim].astype(float), -q.frac_bits)
-                    for n, q in enumerate((fmt.position, fmt.accumulator)))
+        x, force = (
+            np.ldexp(raw[:, n, : scene.dim].astype(float), -q.frac_bits)
+            for n, q in enumerate((fmt.position, fmt.accumulator))
+        )
         return x * units.size + units.centre, force * units.force
 
     def payload(self, velocity=None) -> bytes:

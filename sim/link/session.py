@@ -51,8 +51,14 @@ class Session:
         If who answers speaks another version.
     """
 
-    def __init__(self, line, key_of: Callable[[Identity], bytes], timeout: float = TIMEOUT, attempts: int = ATTEMPTS,
-                 clock: Callable[[], float] = monotonic):
+    def __init__(
+        self,
+        line,
+        key_of: Callable[[Identity], bytes],
+        timeout: float = TIMEOUT,
+        attempts: int = ATTEMPTS,
+        clock: Callable[[], float] = monotonic,
+    ):
         self._line, self._timeout, self._attempts, self._clock = line, timeout, attempts, clock
         self._key, self._buffer = NO_KEY, bytearray()
         self.retries = self.damaged = 0
@@ -86,9 +92,11 @@ class Session:
                     return frame
             self.retries += 1
             self._send(under_way)
-        raise NoAnswer(f"--port must lead to a circuit that answers, but {getattr(self._line, 'url', 'it')} was silent "
-                       f"for {self._attempts * self._timeout:.3g} s ({self.damaged} damaged frames came): it must be "
-                       "loaded (make flash) and have the rate of --baud")
+        raise NoAnswer(
+            f"--port must lead to a circuit that answers, but {getattr(self._line, 'url', 'it')} was silent "
+            f"for {self._attempts * self._timeout:.3g} s ({self.damaged} damaged frames came): it must be "
+            "loaded (make flash) and have the rate of --baud"
+        )
 
     def _greet(self) -> Identity:
         """Begin a session: whatever was before it is over, on the line too."""
@@ -107,8 +115,9 @@ class Session:
         try:
             return Identity.read(told[2:])
         except ValueError as error:
-            raise OtherCircuit("--port must lead to a circuit of this version, but its identity has another form: "
-                               f"{error}") from None
+            raise OtherCircuit(
+                f"--port must lead to a circuit of this version, but its identity has another form: {error}"
+            ) from None
 
     def _frame(self, operation: Operation, payload: bytes) -> Frame:
         frame = Frame(operation, self._seq, payload=payload)

@@ -35,8 +35,10 @@ def scene(comparison: Comparison) -> dict:
         "size": of.size,
         "circuit": comparison.circuit.backend,
         "phases": [{"name": phase.name, "end": float(end)} for phase, end in zip(of.phases, _ends(of), strict=True)],
-        "held": [{"fixed": np.flatnonzero(phase.fixed).tolist(), "driven": np.flatnonzero(phase.driven).tolist()}
-                 for phase in of.phases],
+        "held": [
+            {"fixed": np.flatnonzero(phase.fixed).tolist(), "driven": np.flatnonzero(phase.driven).tolist()}
+            for phase in of.phases
+        ],
         "nodes": len(mesh.points),
         "frames": frames.tolist(),
         "edges": packed(mesh.edges.ravel(), "<u2"),
@@ -103,8 +105,10 @@ def centred(values: np.ndarray, bits: int) -> dict:
 def together(arrays: list[np.ndarray], low: float, high: float) -> list[dict]:
     """Arrays on one scale, for colours: value = low + (high - low) * integer / 255; what is beyond is at its end."""
     width = high - low or 1.0
-    return [{"low": low, "high": high, "data": packed(np.rint((values.clip(low, high) - low) / width * 255), "u1")}
-            for values in arrays]
+    return [
+        {"low": low, "high": high, "data": packed(np.rint((values.clip(low, high) - low) / width * 255), "u1")}
+        for values in arrays
+    ]
 
 
 def packed(integers: np.ndarray, kind: str) -> str:

@@ -37,8 +37,9 @@ class Section:
     @classmethod
     def of(cls, comparison: Comparison) -> Section:
         scene = comparison.scene
-        return cls(comparison.entry(), scene.description, facts(scene), len(ranges.sampled(scene)),
-                   pack.scene(comparison))
+        return cls(
+            comparison.entry(), scene.description, facts(scene), len(ranges.sampled(scene)), pack.scene(comparison)
+        )
 
 
 def section(scene: Scene, progress=None, *, lanes: int, updates: int) -> Section:
@@ -58,23 +59,36 @@ def write(sections: list[Section], folder: Path) -> None:
     """Write the page and the figures that it shows."""
     entries = [section.entry for section in sections]
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(FOLDER), autoescape=True, trim_blocks=True, lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined)
-    environment.filters |= {"brief": brief, "percent": percent, "shortcomings": shortcomings, "slug": slug,
-                            "si": si, "least": least}
+        loader=jinja2.FileSystemLoader(FOLDER),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.filters |= {
+        "brief": brief,
+        "percent": percent,
+        "shortcomings": shortcomings,
+        "slug": slug,
+        "si": si,
+        "least": least,
+    }
     page = environment.get_template("page.html.j2").render(
-        sections=sections, entries=entries, backends=BACKENDS, style=(FOLDER / "page.css").read_text(),
+        sections=sections,
+        entries=entries,
+        backends=BACKENDS,
+        style=(FOLDER / "page.css").read_text(),
         script="\n".join((FOLDER / name).read_text() for name in SCRIPTS),
         data=[inlined(section.drawn | {"ranges": section.entry["ranges"]}) for section in sections],
-        colours=inlined(colours()))
+        colours=inlined(colours()),
+    )
     write_text(folder / DATA, json.dumps(entries, indent=2, allow_nan=False) + "\n")
     write_text(folder / "index.html", page)
 
 
 def colours() -> dict[str, list[str]]:
     """Each quantity's scale, as colours from its lowest to its highest value."""
-    return {name: [to_hex(scale(n / (SAMPLES - 1))) for n in range(SAMPLES)]
-            for name, scale in style.scales().items()}
+    return {name: [to_hex(scale(n / (SAMPLES - 1))) for n in range(SAMPLES)] for name, scale in style.scales().items()}
 
 
 def inlined(value) -> str:

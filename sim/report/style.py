@@ -33,15 +33,28 @@ def panels(columns: int, tall: float):
     height = width * min(tall, 1.5)
     full = above + height + below
     figure = Figure((WIDTH, full))
-    axes = figure.subplots(1, columns, sharex=True, sharey=True, gridspec_kw={
-        "left": left / WIDTH, "right": 1 - right / WIDTH, "bottom": below / full, "top": 1 - above / full,
-        "wspace": gap / width})
+    axes = figure.subplots(
+        1,
+        columns,
+        sharex=True,
+        sharey=True,
+        gridspec_kw={
+            "left": left / WIDTH,
+            "right": 1 - right / WIDTH,
+            "bottom": below / full,
+            "top": 1 - above / full,
+            "wspace": gap / width,
+        },
+    )
     return figure, axes
 
 
 def legend() -> list[Line2D]:
-    return [Line2D([], [], **FLOAT_LINE, label="float64"), Line2D([], [], **CIRCUIT_LINE, label="circuit"),
-            Line2D([], [], **OUTLINE, label="initial outline")]
+    return [
+        Line2D([], [], **FLOAT_LINE, label="float64"),
+        Line2D([], [], **CIRCUIT_LINE, label="circuit"),
+        Line2D([], [], **OUTLINE, label="initial outline"),
+    ]
 
 
 def quiet(axes) -> None:

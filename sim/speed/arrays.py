@@ -48,28 +48,56 @@ class Arrays(NamedTuple):
 def arrays(scene: Scene, dtype) -> Arrays:
     """The scene at rest. Raises `InputError` for dampers that depend on the force."""
     if scene.force_dependent:
-        raise InputError("materials must have linear dampers for the compiled float model, "
-                         "not ones that depend on the force")
+        raise InputError(
+            "materials must have linear dampers for the compiled float model, not ones that depend on the force"
+        )
     mesh, dim, edges, nodes = scene.mesh, scene.dim, len(scene.mesh.edges), len(scene.mesh.points)
     i, j = mesh.edges.T
     where = np.argsort(j, kind="stable")
     k, c1, c2, a0 = (scene.per_edge(name) for name in ("k", "c1", "c_max", "a0"))
     rho = 1 / (1 + c1 / c2)
     length = np.linalg.norm(mesh.points[j] - mesh.points[i], axis=1)
-    edge = [a0, a0, 0 * a0, rho * k, rho * k * a0 * length, rho * c1, 1 / c2,
-            scene.per_edge("a_min"), scene.per_edge("a_max")]
+    edge = [
+        a0,
+        a0,
+        0 * a0,
+        rho * k,
+        rho * k * a0 * length,
+        rho * c1,
+        1 / c2,
+        scene.per_edge("a_min"),
+        scene.per_edge("a_max"),
+    ]
     node = np.concatenate([mesh.points.T, np.zeros((dim, nodes))])
     return Arrays(
-        *(index.astype(np.uint64) for index in (
-            i, j, np.searchsorted(i, np.arange(nodes + 1)), np.searchsorted(j[where], np.arange(nodes + 1)), where)),
-        *(rows(values, dtype) for values in (
-            edge, np.zeros((2 * dim, edges)), np.zeros((dim, edges)),
-            node, node, np.zeros((2 * dim, nodes)), np.zeros((dim, nodes)))),
+        *(
+            index.astype(np.uint64)
+            for index in (
+                i,
+                j,
+                np.searchsorted(i, np.arange(nodes + 1)),
+                np.searchsorted(j[where], np.arange(nodes + 1)),
+                where,
+            )
+        ),
+        *(
+            rows(values, dtype)
+            for values in (
+                edge,
+                np.zeros((2 * dim, edges)),
+                np.zeros((dim, edges)),
+                node,
+                node,
+                np.zeros((2 * dim, nodes)),
+                np.zeros((dim, nodes)),
+            )
+        ),
         mobility=rows(np.zeros((1, nodes)), dtype)[0],
         drift=rows(np.zeros((dim, nodes)), dtype),
         time=(scene.dt * np.array([1, 1, 2]) / 2).astype(dtype),
         weight=(scene.dt * np.array([1, 2, 2, 1]) / 6).astype(dtype),
-        axes=tuple(range(dim)))
+        axes=tuple(range(dim)),
+    )
 
 
 def rows(values, dtype) -> np.ndarray:

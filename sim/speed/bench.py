@@ -22,8 +22,14 @@ BOARD = "ulx3s-85f"
 """Whose clock the circuit has, if no other is asked for: that of its timing result."""
 
 
-def bench(names: Iterable[str], cycles_per_step: Callable[[Scene, int, int], int], software: Callable[[Scene], dict],
-          *, circuits: Iterable[tuple[int, int]] = CIRCUITS, clock: float) -> list[dict]:
+def bench(
+    names: Iterable[str],
+    cycles_per_step: Callable[[Scene, int, int], int],
+    software: Callable[[Scene], dict],
+    *,
+    circuits: Iterable[tuple[int, int]] = CIRCUITS,
+    clock: float,
+) -> list[dict]:
     """Entries of meshes, by their names as in `sim.speed.meshes`: every circuit for each.
 
     Parameters

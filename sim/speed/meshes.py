@@ -36,10 +36,25 @@ def scene(name: str) -> Scene:
     make = mesh.rectangle if len(nodes) == 2 else mesh.box
     block = make(nodes, tuple(spacing * (n - 1) for n in nodes))
     shape = block.points.shape
-    hanging = Phase("hang", LAP, fixed=block.points[:, -1] == 0, velocity=np.zeros(shape),
-                    driven=np.zeros(shape[0], bool), load=np.zeros(shape))
+    hanging = Phase(
+        "hang",
+        LAP,
+        fixed=block.points[:, -1] == 0,
+        velocity=np.zeros(shape),
+        driven=np.zeros(shape[0], bool),
+        load=np.zeros(shape),
+    )
     gravity = PULL / np.ptp(block.points[:, -1]) * np.eye(block.dim)[-1]
     return Scene(
-        name=name, description="", path=None, mesh=block, materials=(dough,),
-        edge_material=np.zeros(len(block.edges), int), mass=block.lumped_mass(density), gravity=gravity,
-        dt=DT, phases=(hanging,), frames=np.array([0, LAP]))
+        name=name,
+        description="",
+        path=None,
+        mesh=block,
+        materials=(dough,),
+        edge_material=np.zeros(len(block.edges), int),
+        mass=block.lumped_mass(density),
+        gravity=gravity,
+        dt=DT,
+        phases=(hanging,),
+        frames=np.array([0, LAP]),
+    )

@@ -30,29 +30,62 @@ def progress():
 def print_tables(entries: list[dict]) -> None:
     """The circuits' steps and how many times as long the programs' take, then the programs' own times."""
     software = entries[0]["software"]
-    print("One step evaluates every edge 4 times, as Runge-Kutta wants it. Circuit with P lanes and M node updates a "
-          f"cycle,\nat {entries[0]['clock_mhz']:g} MHz. Software on this machine: median step in us, and how many "
-          f"times the circuit's it is.\nProcessor: {processor()}\n")
-    rows = [["mesh", "nodes", "edges", "P", "M", "cycles", "busy", "us", "M edges/s",
-             *(title for name in software for title in (SHORT[name], "times"))]]
+    print(
+        "One step evaluates every edge 4 times, as Runge-Kutta wants it. Circuit with P lanes and M node updates a "
+        f"cycle,\nat {entries[0]['clock_mhz']:g} MHz. Software on this machine: median step in us, and how many "
+        f"times the circuit's it is.\nProcessor: {processor()}\n"
+    )
+    rows = [
+        [
+            "mesh",
+            "nodes",
+            "edges",
+            "P",
+            "M",
+            "cycles",
+            "busy",
+            "us",
+            "M edges/s",
+            *(title for name in software for title in (SHORT[name], "times")),
+        ]
+    ]
     for e in entries:
-        rows.append([
-            e["mesh"], *(str(e[key]) for key in ("nodes", "edges", "lanes", "updates", "cycles_per_step")),
-            f"{e['occupancy']:.3f}", f"{e['step_us']:.2f}", f"{e['edge_evals_per_s'] / 1e6:.1f}",
-            *(text for program in e["software"].values()
-              for text in (f"{program['step_us']:.1f}", f"{program['ratio']:.2f}"))])
+        rows.append(
+            [
+                e["mesh"],
+                *(str(e[key]) for key in ("nodes", "edges", "lanes", "updates", "cycles_per_step")),
+                f"{e['occupancy']:.3f}",
+                f"{e['step_us']:.2f}",
+                f"{e['edge_evals_per_s'] / 1e6:.1f}",
+                *(
+                    text
+                    for program in e["software"].values()
+                    for text in (f"{program['step_us']:.1f}", f"{program['ratio']:.2f}")
+                ),
+            ]
+        )
     _print(rows)
 
     print("\nStep times of the software in us (the circuit's are all the same):\n")
     rows = [["mesh", *(title for name in software for title in (SHORT[name], "99.9 %", "longest"))]]
     for e in {e["mesh"]: e for e in entries}.values():
-        rows.append([e["mesh"], *(f"{program[key]:.1f}" for program in e["software"].values()
-                                  for key in ("step_us", "p999_us", "max_us"))])
+        rows.append(
+            [
+                e["mesh"],
+                *(
+                    f"{program[key]:.1f}"
+                    for program in e["software"].values()
+                    for key in ("step_us", "p999_us", "max_us")
+                ),
+            ]
+        )
     _print(rows)
     print()
     for name, program in software.items():
-        print(f"{SHORT[name]}: {SOFTWARE[name]}; threads: {program['threads']}, steps: {program['steps']}, "
-              f"looking at the clock: {program['clock_us']:.2f} us")
+        print(
+            f"{SHORT[name]}: {SOFTWARE[name]}; threads: {program['threads']}, steps: {program['steps']}, "
+            f"looking at the clock: {program['clock_us']:.2f} us"
+        )
     if busy := disturbed(entries):
         print(f"\nwarning: other programs used the machine, the software's times are too long: {', '.join(busy)}")
 

@@ -56,9 +56,14 @@ def software(scene: Scene, steps: int = LAP, progress: Callable[[str], object] |
         times = np.concatenate(taken) / 1000
         clock = _python_clock() if name == "numpy" else _compiled_clock()
         figures[name] = {
-            "threads": count, "steps": steps, "step_us": float(np.median(times)),
-            "p999_us": float(np.percentile(times, 99.9)), "max_us": float(times.max()),
-            "clock_us": float(np.median(clock)) / 1000, "running": min(1.0, cpu / (wall * count))}
+            "threads": count,
+            "steps": steps,
+            "step_us": float(np.median(times)),
+            "p999_us": float(np.percentile(times, 99.9)),
+            "max_us": float(times.max()),
+            "clock_us": float(np.median(clock)) / 1000,
+            "running": min(1.0, cpu / (wall * count)),
+        }
     return figures
 
 
