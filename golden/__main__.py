@@ -9,9 +9,9 @@ from pathlib import Path
 
 from msgspec.structs import fields
 
-from golden import schema
-from golden.command import Parser, execute, said_meanwhile
-from golden.errors import InputError
+from golden.scene import schema
+from golden.support.command import Parser, execute, said_meanwhile
+from golden.support.errors import InputError
 
 MADE = {tag: [field.name for field in fields(kind)] for tag, kind in schema.KINDS.items() if tag != "file"}
 """The kinds that need no file, and the options that each has."""
@@ -59,7 +59,9 @@ def _number(kind):
 
 
 def mesh(args) -> int:
-    from golden import inspection, kinds, meshfile, scene  # SciPy takes its time
+    from golden.mesh import files as meshfile
+    from golden.scene import inspection, kinds  # SciPy takes its time
+    from golden.scene import load as scene
 
     table, out = _table(args), args.out and _free(Path(args.out), args.force)
     materials_of = scene.load(args.scene) if args.scene else None
@@ -96,7 +98,7 @@ def _table(args) -> schema.Mesh:
 
 def _free(path: Path, force: bool) -> Path:
     """The file to write. Raises `InputError` before anything is computed for it if it can't be."""
-    from golden.meshfile import FORMATS
+    from golden.mesh.files import FORMATS
 
     if path.suffix not in FORMATS:
         raise InputError(f"--out must end in {', '.join(FORMATS)}, not {path.name!r}")
@@ -111,7 +113,7 @@ def _free(path: Path, force: bool) -> Path:
 
 
 def main(arguments=None) -> int:
-    """Exit code: that of `golden.command.execute`."""
+    """Exit code: that of `golden.support.command.execute`."""
     return execute(parser(), arguments)
 
 

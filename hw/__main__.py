@@ -5,17 +5,16 @@ import re
 import sys
 from pathlib import Path
 
-from golden.command import Parser, execute, said_meanwhile
-from golden.errors import InputError
-from golden.formats import Formats
+from golden.datapath.formats import Formats
+from golden.support.command import Parser, execute, said_meanwhile
+from golden.support.errors import InputError
+from golden.support.paths import ROOT
+from hw.boards import doctor, flash
+from hw.boards.bitstream import command as bitstream
+from hw.boards.timing import command as timing
+from hw.families import FAMILIES
+from hw.parameters import Parameters
 
-from . import doctor, flash
-from .bitstream import command as bitstream
-from .families import FAMILIES
-from .parameters import Parameters
-from .timing import command as timing
-
-ROOT = Path(__file__).parents[1]
 FORMATS = {
     "operand": "bits of a multiplier's operand",
     "state": "bits of a stored state",
@@ -88,7 +87,7 @@ def parameters(args) -> Parameters:
 
 
 def verilog(args) -> int:
-    from . import build
+    from hw.emit import build
 
     chosen, folder = parameters(args), Path(args.out)
     with said_meanwhile(f"writing the Verilog of {build.describe(chosen)} ..."):
@@ -98,10 +97,10 @@ def verilog(args) -> int:
 
 
 def lint(args) -> int:
-    from . import build
-    from .lint import WAIVERS
-    from .lint import lint as warnings
-    from .verilog import TOP
+    from hw.emit import build
+    from hw.emit.lint import WAIVERS
+    from hw.emit.lint import lint as warnings
+    from hw.emit.verilog import TOP
 
     verilog(args)
     found = warnings(Path(args.out) / build.VERILOG, top=TOP, family=args.family)
@@ -112,7 +111,7 @@ def lint(args) -> int:
 
 
 def map_(args) -> int:
-    from . import build, pages
+    from hw.emit import build, pages
 
     chosen, folder = parameters(args), Path(args.out)
     pages.write(chosen, folder)
@@ -121,7 +120,7 @@ def map_(args) -> int:
 
 
 def docs(args) -> int:
-    from .docs import updated
+    from hw.docs import updated
 
     path = ROOT / "README.md"
     text = path.read_text(encoding="utf-8")
@@ -132,7 +131,7 @@ def docs(args) -> int:
 
 
 def main(arguments=None) -> int:
-    """Exit code: that of `golden.command.execute`, or 1 for warnings of the lint."""
+    """Exit code: that of `golden.support.command.execute`, or 1 for warnings of the lint."""
     return execute(parser(), arguments)
 
 

@@ -2,14 +2,13 @@
 
 import re
 
-from golden import formats
-
-from .bitstream import command as bitstream
-from .bitstream import result as build
-from .latency import latencies
-from .parameters import Parameters
-from .registers import CONTROL_TEXT, Control, Map, Region
-from .timing import result as timing
+from golden.datapath import formats
+from hw.boards.bitstream import command as bitstream
+from hw.boards.bitstream import result as build
+from hw.boards.timing import result as timing
+from hw.machine.latency import latencies
+from hw.map.memory_map import CONTROL_TEXT, Control, Map, Region
+from hw.parameters import Parameters
 
 
 def format_table(parameters: Parameters) -> str:

@@ -5,12 +5,11 @@ from typing import ClassVar
 
 from amaranth.hdl import Const, Value
 
-from golden import records
-from golden.formats import Formats
-from golden.graph import AXES
-
-from .cost import Cost
-from .families import FAMILIES
+from golden.datapath import records
+from golden.datapath.formats import Formats
+from golden.numbers.graph import AXES
+from hw.families import FAMILIES
+from hw.pipeline.cost import Cost
 
 EDGE, NODE = records.edge_entry(), records.node_entry()
 
@@ -39,9 +38,9 @@ class Parameters:
     Raises
     ------
     ValueError
-        If one of them is out of range: `golden.records` says how large a node's number may be, and so on; if a state
-        word, in which the host writes everything, is shorter than the longest of those records; or if the family is
-        unknown.
+        If one of them is out of range: `golden.datapath.records` says how large a node's number may be, and so on; if a
+        state word, in which the host writes everything, is shorter than the longest of those records; or if the family
+        is unknown.
     """
 
     lanes: int = 4

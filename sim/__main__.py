@@ -8,12 +8,12 @@ from functools import partial
 from math import inf, nan
 from pathlib import Path
 
-from golden import scene as scenes
-from golden.command import Parser, execute
-from golden.errors import InputError
-from sim import machines, waves
-from sim.errors import about
+from golden.scene import load as scenes
+from golden.support.command import Parser, execute
+from golden.support.errors import InputError
+from sim.backends import machines, waves
 from sim.run import BACKENDS, LANES, UPDATES
+from sim.support.errors import about
 
 
 def parser() -> Parser:
@@ -146,8 +146,9 @@ def megahertz(text: str) -> float:
 
 
 def run(args) -> int:
-    from sim import folder, store, terminal
+    from sim.results import store
     from sim.run import run
+    from sim.support import folder, terminal
 
     only = dict.fromkeys(("lanes", "updates", "waves"), "rtl") | dict.fromkeys(("port", "baud"), "board")
     for option, backend in only.items():
@@ -163,7 +164,7 @@ def run(args) -> int:
     for suffix in waves.FORMATS:  # of an earlier run
         (out / f"waves.{suffix}").unlink(missing_ok=True)
     if args.backend == "board":
-        from sim.link.board import BAUD, Board
+        from sim.backends.link.board import BAUD, Board
 
         wanted["link"] = Board.at(args.port, args.baud or BAUD)
     with about(scene), terminal.steps(scene, args.backend) as shown:
@@ -193,8 +194,10 @@ def _circuit(args):
 
 
 def compare(args) -> int:
-    from sim import batch, folder, limits, report, terminal
-    from sim.compare import STAGES
+    from sim import report
+    from sim.encode import limits
+    from sim.results.compare import STAGES
+    from sim.support import batch, folder, terminal
 
     parameters, wanted = _circuit(args)
     loaded = [scenes.load(path) for path in args.scenes]
@@ -211,8 +214,10 @@ def compare(args) -> int:
 
 
 def report(args) -> int:
-    from sim import batch, folder, report, stored, terminal
-    from sim.compare import STAGES
+    from sim import report
+    from sim.results import stored
+    from sim.results.compare import STAGES
+    from sim.support import batch, folder, terminal
 
     groups = stored.grouped(args.runs)
     out = folder.claim(args.out, args.force)
@@ -224,8 +229,9 @@ def report(args) -> int:
 
 def _reported(args, sections, out: Path) -> int:
     """Write the page and print its table. 1 if a scene does not pass, and why."""
-    from sim import report, terminal
-    from sim.compare import shortcomings
+    from sim import report
+    from sim.results.compare import shortcomings
+    from sim.support import terminal
 
     entries = [section.entry for section in sections]
     report.write(sections, out)
@@ -238,8 +244,8 @@ def _reported(args, sections, out: Path) -> int:
 
 
 def figures(args) -> int:
-    from sim import folder, terminal
     from sim.figures import catalogue, make, table
+    from sim.support import folder, terminal
 
     names = catalogue.chosen(args.names)
     out = folder.claim(args.out, args.force)
@@ -262,7 +268,8 @@ def figures(args) -> int:
 
 
 def export(args) -> int:
-    from sim import export, folder, store, terminal
+    from sim.results import export, store
+    from sim.support import folder, terminal
 
     scene, _, trajectory = store.load(args.run_folder)
     out = folder.claim(args.out or Path(args.run_folder) / "vtu", args.force)
@@ -272,8 +279,8 @@ def export(args) -> int:
 
 
 def serve(args) -> int:
-    from sim.link import serve as service
-    from sim.link.served import BAUD, CLOCK_HZ, SerialCircuit
+    from sim.backends.link import serve as service
+    from sim.backends.link.served import BAUD, CLOCK_HZ, SerialCircuit
 
     parameters, _ = _circuit(args)
     server = service.listener(args.port)
@@ -290,7 +297,8 @@ def serve(args) -> int:
 
 
 def bench(args) -> int:
-    from sim import cycles, steptime
+    from sim.results import cycles
+    from sim.results import step_time as steptime
     from sim.speed import bench, table, timing  # Numba is slow to load
     from sim.speed.meshes import MESHES
 
@@ -309,7 +317,7 @@ def bench(args) -> int:
 
 
 def main(arguments=None) -> int:
-    """Exit code: that of `golden.command.execute`, or 1 when models disagree or something saturated."""
+    """Exit code: that of `golden.support.command.execute`, or 1 when models disagree or something saturated."""
     return execute(parser(), arguments)
 
 

@@ -9,15 +9,16 @@ from time import perf_counter
 
 import numpy as np
 
-from golden import model
-from golden.errors import InputError
-from golden.problem import Scene
-from golden.trajectory import Trajectory
-from sim import limits, machines
-from sim import waves as waveforms
-from sim.image import Loaded
-from sim.switch import switch
-from sim.units import Units
+from golden.physics import model
+from golden.physics.scene import Scene
+from golden.physics.trajectory import Trajectory
+from golden.support.errors import InputError
+from sim.backends import machines
+from sim.backends import waves as waveforms
+from sim.encode import limits
+from sim.encode.encode import Loaded
+from sim.encode.switch import switch
+from sim.encode.units import Units
 
 COMPARED = "float", "fixed", "rtl"
 BACKENDS = *COMPARED, "board"
@@ -30,7 +31,7 @@ REPORT_EVERY = 200  # steps between two calls of `progress`
 class Raw:
     """The circuit's own integers at F frames, nodes and edges in the scene's order: what two runs must agree on."""
 
-    x: np.ndarray  # (F, N, 3) int64, golden.formats position
+    x: np.ndarray  # (F, N, 3) int64, golden.datapath.formats position
     v: np.ndarray  # (F, N, 3) int64, velocity
     ratio: np.ndarray  # (F, E) int64, ratio
 
@@ -82,8 +83,8 @@ def run(
     Parameters
     ----------
     backend
-        "float" (`golden.model`), "fixed" (the integer model), "rtl" (the circuit's Verilog under Verilator) or "board"
-        (a circuit behind a link).
+        "float" (`golden.physics.model`), "fixed" (the integer model), "rtl" (the circuit's Verilog under Verilator) or
+        "board" (a circuit behind a link).
     lanes, updates
         Edge processors and node updaters of the circuit; "rtl" only.
     edge_order
@@ -94,7 +95,7 @@ def run(
     waves
         File to which the circuit's waveforms are written (.fst or .vcd); "rtl" only.
     link
-        The `sim.link.board.Board`; "board" only. It is closed in any case.
+        The `sim.backends.link.board.Board`; "board" only. It is closed in any case.
     progress
         Called with the number of steps done, every 200 steps and at every frame.
 

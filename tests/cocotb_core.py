@@ -4,11 +4,11 @@ import cocotb
 import numpy as np
 from cocotb_host import MAP, PARAMETERS, SEED, Object, control, start
 
-from golden import records
-from golden.machine import Machine
-from golden.rk4 import RK4
-from hw.core import Core
-from hw.registers import COUNTERS, MAGIC, NODE_FORCE, NODE_STATE, TABLE_WORDS, VERSION, Control, Region, join
+from golden.datapath import records
+from golden.datapath.machine import Machine
+from golden.datapath.rk4 import RK4
+from hw.machine.core import Core
+from hw.map.memory_map import COUNTERS, MAGIC, NODE_FORCE, NODE_STATE, TABLE_WORDS, VERSION, Control, Region, join
 
 
 @cocotb.test()

@@ -8,13 +8,13 @@ from cocotb.clock import Clock
 from cocotb.triggers import FallingEdge
 from integer_objects import MATERIALS, irregular, pressed
 
-from golden import records
-from golden.machine import Machine
-from hw.host import LATENCY
+from golden.datapath import records
+from golden.datapath.machine import Machine
+from hw.machine.host_port import LATENCY
+from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region, join
 from hw.parameters import Parameters
-from hw.registers import NODE_FORCE, NODE_STATE, Control, Map, Region, join
-from sim.image import load
-from sim.program import Program
+from sim.encode.encode import load
+from sim.encode.program import Program
 
 PARAMETERS = Parameters(lanes=2, nodes=16, edges=64, materials=2, tables=1)
 MAP = Map(PARAMETERS)
@@ -86,7 +86,7 @@ class Host:
         return await self.wait()
 
     async def wait(self):
-        """Until the run is over: its counters (`hw.registers.COUNTERS`), counted on the way."""
+        """Until the run is over: its counters (`hw.map.memory_map.COUNTERS`), counted on the way."""
         counted = np.zeros(6, int)
         while int(self.dut.busy.value):
             sequencer = self.dut.sequencer

@@ -10,7 +10,7 @@ import hypothesis
 import numpy as np
 import pytest
 
-from golden import files
+from golden.support import files
 
 SEED = int(os.environ.get("RHEOGATE_SEED", "20261122"))
 

@@ -1,14 +1,14 @@
-"""The integer model of an edge (`golden.edge`) that tells for which edges each of its roundings saturated."""
+"""The integer model of an edge (`golden.datapath.edge`) that tells for which edges each of its roundings saturated."""
 
 from collections import Counter
 
 import numpy as np
 from datapath_calls import call_edge
 
-from golden.graph import Graph, flatten
-from golden.qarray import QArray
-from golden.qformat import Q
-from golden.tables import Tables, inverse_table
+from golden.datapath.tables import Tables, inverse_table
+from golden.numbers.graph import Graph, flatten
+from golden.numbers.qarray import QArray
+from golden.numbers.qformat import Q
 
 
 class Watch:
@@ -56,14 +56,14 @@ class Watched(QArray):
 
 
 class EdgeModel:
-    """One batch of edges through `golden.edge.edge`.
+    """One batch of edges through `golden.datapath.edge.edge`.
 
     Parameters
     ----------
     damper : dict
-        `golden.records.damper_word` -> (tables, segments).
+        `golden.datapath.records.damper_word` -> (tables, segments).
     inputs : dict of str to int64 arrays
-        By the names of `golden.datapath.edge_graph`'s inputs.
+        By the names of `golden.datapath.graphs.edge_graph`'s inputs.
 
     Attributes
     ----------

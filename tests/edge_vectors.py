@@ -4,12 +4,12 @@ import numpy as np
 from edge_model import EdgeModel
 from integer_objects import random_raw, random_record
 
-from golden import records
-from golden.formats import Formats
-from golden.graph import AXES
-from golden.qformat import Q
-from golden.rk4 import RK4
-from golden.tables import damper_table, octave
+from golden.datapath import records
+from golden.datapath.formats import Formats
+from golden.datapath.rk4 import RK4
+from golden.datapath.tables import damper_table, octave
+from golden.numbers.graph import AXES
+from golden.numbers.qformat import Q
 
 STEEP = dict(g1=2.0**-7, g2=2.0**-1, rho=lambda g: 1 / (1 + 4 * g), sigma=lambda g: g / (1 + 4 * g))
 

@@ -8,9 +8,9 @@ from amaranth.hdl import Cat, Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from hw.emit.verilog import convert
 from hw.families import FAMILIES, MODELS
-from hw.verilog import convert
-from sim.verilated import library, opened
+from sim.backends.verilated import library, opened
 
 SHIM = Path(__file__).with_name("twins.cpp")
 SLOT = 64

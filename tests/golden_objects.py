@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from golden.materials import Material
-from golden.mesh import Mesh
-from golden.problem import Phase, Scene
+from golden.mesh.mesh import Mesh
+from golden.physics.materials import Material
+from golden.physics.scene import Phase, Scene
 
 
 def line(length=1.0) -> Mesh:

@@ -1,10 +1,10 @@
-"""A host port with memories behind it, for the tests of `hw.host`."""
+"""A host port with memories behind it, for the tests of `hw.machine.host_port`."""
 
 from hw_objects import simulate
 
-from hw.host import CHOICE, LATENCY, MEMORY, HostPort, word_of
+from hw.machine.host_port import CHOICE, LATENCY, MEMORY, HostPort, word_of
+from hw.map.memory_map import Control, Map, Region, join
 from hw.parameters import Parameters
-from hw.registers import Control, Map, Region, join
 
 P = Parameters(lanes=3, nodes=20, edges=31, materials=5, tables=1)
 MAP = Map(P)

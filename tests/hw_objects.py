@@ -13,13 +13,13 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.sim import Simulator
 
-from golden.graph import Graph
-from golden.qarray import QArray
-from hw.core import Core
-from hw.cost import Cost
-from hw.operations import shape
-from hw.pipe import FAULT_LATENCY, Pipe
-from hw.schedule import Schedule
+from golden.numbers.graph import Graph
+from golden.numbers.qarray import QArray
+from hw.machine.core import Core
+from hw.pipeline.cost import Cost
+from hw.pipeline.operations import shape
+from hw.pipeline.pipe import FAULT_LATENCY, Pipe
+from hw.pipeline.schedule import Schedule
 
 
 def simulate(component, *benches):

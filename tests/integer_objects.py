@@ -3,12 +3,12 @@
 import numpy as np
 from golden_objects import phase, scene
 
-from golden import records
-from golden.formats import Formats
-from golden.image import Image
-from golden.materials import PRESETS
-from golden.mesh import Mesh, box, rectangle
-from golden.qformat import Q
+from golden.datapath import records
+from golden.datapath.formats import Formats
+from golden.datapath.image import Image
+from golden.mesh.mesh import Mesh, box, rectangle
+from golden.numbers.qformat import Q
+from golden.physics.materials import PRESETS
 
 FORCE = dict(f1=0.05, f2=0.5)
 MATERIALS = {

@@ -9,15 +9,15 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from link_objects import KEY
 
-from hw.core import Core
+from hw.emit.verilog import convert
 from hw.link.device import Device
 from hw.link.frame import Frame, unpacked
 from hw.link.receive import BYTE_CYCLES
+from hw.machine.core import Core
+from hw.map.memory_map import MAGIC
 from hw.parameters import Parameters
-from hw.registers import MAGIC
-from hw.verilog import convert
-from sim.machines import BUILD
-from sim.verilated import library, opened
+from sim.backends.machines import BUILD
+from sim.backends.verilated import library, opened
 
 SHIM = Path(__file__).with_name("linked.cpp")
 SMALL = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1)

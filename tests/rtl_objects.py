@@ -5,12 +5,12 @@ import dataclasses
 import numpy as np
 from integer_objects import MATERIALS, irregular, pressed
 
-from golden.mesh import Mesh
+from golden.mesh.mesh import Mesh
 from hw.parameters import Parameters
-from sim.loaded import CircuitMachine
-from sim.machines import BUILD
-from sim.order import ranks
-from sim.rtl import Circuit
+from sim.backends.circuit import CircuitMachine
+from sim.backends.machines import BUILD
+from sim.backends.rtl import Circuit
+from sim.encode.order import ranks
 
 STATE = "x", "v", "force", "ratio"
 

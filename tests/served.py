@@ -6,9 +6,9 @@ import threading
 import numpy as np
 
 from hw.parameters import Parameters
-from sim.link import serve
-from sim.link.served import BAUD, CLOCK_HZ, SerialCircuit
-from sim.machines import BUILD
+from sim.backends.link import serve
+from sim.backends.link.served import BAUD, CLOCK_HZ, SerialCircuit
+from sim.backends.machines import BUILD
 
 SMALL = Parameters(lanes=1, nodes=32, edges=64, materials=2, tables=1)
 

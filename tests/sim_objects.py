@@ -5,8 +5,9 @@ from contextlib import contextmanager
 import golden_objects as objects
 import numpy as np
 
-from golden import materials, mesh
-from golden.machine import Machine
+from golden.datapath.machine import Machine
+from golden.mesh import mesh
+from golden.physics import materials
 
 DT = 2e-4
 MATERIALS = {
@@ -49,7 +50,7 @@ class Standin(Machine):
 
 
 def in_place_of_the_circuit(machine=Standin):
-    """Something to put in place of `sim.machines.circuit`; it remembers what it was asked for in ``asked``."""
+    """Something to put in place of `sim.backends.machines.circuit`; it remembers what it was asked for in ``asked``."""
     asked = []
 
     @contextmanager

@@ -3,8 +3,8 @@
 import apytypes
 import numpy as np
 
-from golden.qarray import QArray
-from golden.qformat import Q
+from golden.numbers.qarray import QArray
+from golden.numbers.qformat import Q
 
 
 def small_formats(widths, int_bits) -> list[Q]:

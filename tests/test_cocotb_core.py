@@ -9,7 +9,7 @@ import cocotb_core
 import pytest
 from cocotb_tools.runner import get_runner
 
-from hw.verilog import TOP, emit
+from hw.emit.verilog import TOP, emit
 
 TESTS = Path(__file__).parent
 # A module that is there twice is compiled once, all at once; the little that is run needs no optimiser

@@ -6,13 +6,15 @@ import documents
 import pytest
 
 from environment import ROOT
-from golden import capacity, scene, stability
-from golden.rk4 import RK4
-from hw.core import datapaths
-from hw.latency import latencies
+from golden.datapath.rk4 import RK4
+from golden.physics import stability
+from golden.scene import capacity
+from golden.scene import load as scene
+from hw.machine.core import datapaths
+from hw.machine.latency import latencies
 from hw.parameters import Parameters
-from sim.compare import BOUND, power
-from sim.cycles import cycles_per_step
+from sim.results.compare import BOUND, power
+from sim.results.cycles import cycles_per_step
 
 PARAMETERS = Parameters()
 FORMATS = PARAMETERS.formats

@@ -13,10 +13,14 @@ import pytest
 from scene_text import GEL, SCENE, TWO, changed, written
 
 from environment import ROOT
-from golden import capacity, inspection, mesh, meshfile, scene, stability
 from golden.__main__ import main
-from golden.errors import InputError
-from golden.formats import Formats
+from golden.datapath.formats import Formats
+from golden.mesh import files as meshfile
+from golden.mesh import mesh
+from golden.physics import stability
+from golden.scene import capacity, inspection
+from golden.scene import load as scene
+from golden.support.errors import InputError
 
 RING = ["ring", "--outer", "0.05", "--inner", "0.03", "--edge", "0.01"]
 BOARDS = ["arty-a7-100", "tang-mega-138k-pro", "ulx3s-25f", "ulx3s-85f"]
@@ -76,7 +80,7 @@ def test_boards_that_are_too_small_say_by_how_much(capsys):
 
 
 def test_capacities_are_those_of_the_boards_circuits():
-    from hw import boards
+    from hw.boards import board as boards
 
     for board in capacity.boards():
         parameters = boards.load(board.board).parameters()

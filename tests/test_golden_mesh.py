@@ -6,8 +6,8 @@ import meshio
 import numpy as np
 import pytest
 
-from golden import mesh
-from golden.errors import InputError
+from golden.mesh import mesh
+from golden.support.errors import InputError
 
 TRIANGLES = np.array([[0, 1, 2], [1, 3, 2]])
 SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0], [2.0, 1.0]])

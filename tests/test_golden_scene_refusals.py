@@ -1,12 +1,12 @@
-"""golden.scene: every mistake in one line, with the path of the key, before anything runs."""
+"""golden.scene.load: every mistake in one line, with the path of the key, before anything runs."""
 
 import numpy as np
 import pytest
 from scene_text import BOTTOM, GEL, MESH, SCENE, TOP, TWO, changed, written
 
-from golden import scene as scenes
-from golden.errors import InputError
-from golden.scene import load
+from golden.scene import load as scenes
+from golden.scene.load import load
+from golden.support.errors import InputError
 
 
 def refusal(path):

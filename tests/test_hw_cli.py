@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from hw_objects import core_to_ask
 
-from golden import files
-from hw import build, lint, manifest
+from golden.support import files
 from hw.__main__ import main
-from hw.build import MANIFEST, VERILOG
+from hw.emit import build, lint, manifest
+from hw.emit.build import MANIFEST, VERILOG
+from hw.emit.verilog import TOP
 from hw.parameters import Parameters
-from hw.verilog import TOP
 
 ROOT = Path(__file__).resolve().parents[1]
 SMALL = ["--lanes", "2", "--nodes", "16", "--edges", "20", "--materials", "3", "--tables", "1"]
@@ -133,13 +133,13 @@ def test_other_versions_of_the_tools_write_again(emitted, out, monkeypatch):
 def test_other_sources_write_again(emitted, out, monkeypatch, tmp_path):
     """Of both packages, whether changed, added, renamed or removed."""
     checkout = tmp_path / "checkout"
-    for path in ("golden/edge.py", "hw/core.py", "hw/blocks/memory.py"):
+    for path in ("golden/datapath/edge.py", "hw/machine/core.py", "hw/blocks/memory.py"):
         (checkout / path).parent.mkdir(parents=True, exist_ok=True)
         (checkout / path).write_text("pass\n")
     monkeypatch.setattr(build, "ROOT", checkout)
     run(out)
     changes = [
-        lambda: (checkout / "golden/edge.py").write_text("pass  # else\n"),
+        lambda: (checkout / "golden/datapath/edge.py").write_text("pass  # else\n"),
         lambda: (checkout / "hw/blocks/memory.py").write_text("pass  # else\n"),
         lambda: (checkout / "hw/new.py").write_text(""),
         lambda: (checkout / "hw/new.py").rename(checkout / "hw/renamed.py"),
@@ -274,13 +274,13 @@ def test_lint_judges_what_it_writes(emitted, out, monkeypatch, capsys):
     arguments = ["lint", *SMALL, "--family", "ecp5", "--out", str(out)]
     assert main(arguments) == 0
     assert said(capsys) == (
-        [f"{out / VERILOG}: {build.describe(emitted[0])}", "0 warnings beyond those that hw/waivers.vlt excuses"],
+        [f"{out / VERILOG}: {build.describe(emitted[0])}", "0 warnings beyond those that hw/emit/waivers.vlt excuses"],
         [],
     )
     warnings += ["%Warning-LATCH: rheogate.v:1:1: a latch", "%Warning-LATCH: rheogate.v:2:1: another"]
     assert main(arguments) == 1
     lines, errors = said(capsys)
-    assert lines[1] == "2 warnings beyond those that hw/waivers.vlt excuses" and errors == warnings
+    assert lines[1] == "2 warnings beyond those that hw/emit/waivers.vlt excuses" and errors == warnings
 
 
 def test_lint_needs_verilator(emitted, out, monkeypatch, capsys):

@@ -15,7 +15,7 @@ from hw.link.protocol import ITEM_BYTES, Status, items
 from hw.link.receive import EVENTS
 from hw.link.registers import LINK, Link
 from hw.link.send import LOOK
-from hw.registers import join
+from hw.map.memory_map import join
 
 MILLION = 1_000_000
 NEXT_GOOD = 8

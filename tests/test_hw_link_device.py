@@ -11,9 +11,9 @@ from linked import IDENTITY, QUIET, SMALL, Line
 
 from hw.link.frame import ANSWER, Frame
 from hw.link.protocol import BUSY, ITEM_BYTES, ITEMS_MOST, Kind, Operation, Status, head, item, items
-from hw.registers import MAGIC, Control, Map, Region
-from sim.native import NativeMachine
-from sim.program import Program
+from hw.map.memory_map import MAGIC, Control, Map, Region
+from sim.backends.native import NativeMachine
+from sim.encode.program import Program
 
 
 def exchanged(*commands: Frame) -> list[Frame]:

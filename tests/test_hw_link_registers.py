@@ -9,8 +9,8 @@ from test_hw_link_device import access, control, hello, loaded, read, write
 from hw.link.frame import Frame
 from hw.link.protocol import Operation, Status, items
 from hw.link.registers import LINK, LINK_TEXT, Link
-from hw.registers import Control, join
-from sim.native import NativeMachine
+from hw.map.memory_map import Control, join
+from sim.backends.native import NativeMachine
 
 ALL = read(join(LINK, 0, 0, 0), len(Link))
 

@@ -5,20 +5,10 @@ from functools import partial
 import pytest
 from hw_objects import refused
 
-from golden import records
-from golden.formats import Formats
+from golden.datapath import records
+from golden.datapath.formats import Formats
+from hw.map.memory_map import ADDRESS_BITS, INDEX_BITS, LANE_BITS, REGION_BITS, WORD_BITS, Control, Map, Region, join
 from hw.parameters import Parameters, updated
-from hw.registers import (
-    ADDRESS_BITS,
-    INDEX_BITS,
-    LANE_BITS,
-    REGION_BITS,
-    WORD_BITS,
-    Control,
-    Map,
-    Region,
-    join,
-)
 
 RANGES = {
     "lanes": (1, 8),

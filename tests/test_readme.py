@@ -8,7 +8,8 @@ import documents
 import pytest
 
 from golden import __main__ as golden
-from golden import model, scene
+from golden.physics import model
+from golden.scene import load as scene
 from hw import __main__ as cli
 from hw.docs import TABLES, updated
 from hw.parameters import Parameters
@@ -74,7 +75,7 @@ def test_commands_parse(package, parser):
 
 
 ELSEWHERE = "sim figures", "sim serve", "socket://"
-"""What takes minutes, or two terminals: tests/test_sim_figures_make.py, tests/test_sim_link_board.py."""
+"""What takes minutes, or two terminals: tests/test_sim_figures_make.py, tests/test_sim_backends_link_board.py."""
 
 
 def test_commands_run(tmp_path, monkeypatch):

@@ -10,14 +10,15 @@ import pytest
 from scene_text import SCENE, changed, written
 from sim_objects import Standin, in_place_of_the_circuit
 
-from golden import model
-from golden import scene as scenes
-from sim import batch, machines, native, waves
-from sim import compare as comparison
+from golden.physics import model
+from golden.scene import load as scenes
 from sim.__main__ import main
-from sim.compare import power
-from sim.folder import MARK
+from sim.backends import machines, native, waves
+from sim.results import compare as comparison
+from sim.results.compare import power
 from sim.run import LANES, UPDATES, run
+from sim.support import batch
+from sim.support.folder import MARK
 
 ROOT = Path(__file__).parents[1]
 QUICK = changed(SCENE, "duration = 0.01", "duration = 0.002")

@@ -7,8 +7,8 @@ import pytest
 from scene_text import changed, written
 from test_sim_cli import QUICK, refused
 
-from sim import waves
 from sim.__main__ import main
+from sim.backends import waves
 
 
 @pytest.fixture

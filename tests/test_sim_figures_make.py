@@ -10,13 +10,13 @@ from figure_runs import pair
 from matplotlib.collections import PolyCollection
 from PIL import Image
 
-from golden import mesh
-from sim import batch, terminal
+from golden.mesh import mesh
 from sim.__main__ import main
 from sim.figures import body, catalogue, film, gravity, make, paper, pressed, reading, solid
 from sim.figures.catalogue import FIGURES
-from sim.folder import MARK
 from sim.report.surface import surface
+from sim.support import batch, terminal
+from sim.support.folder import MARK
 
 SUFFIXES = "png", "svg", "gif"
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from figure_runs import pair
 
-from golden.trajectory import Trajectory
-from sim.compare import BOUND
+from golden.physics.trajectory import Trajectory
 from sim.figures import reading, single_edge
 from sim.figures.catalogue import FIGURES, MATERIALS
 from sim.figures.runs import EDGE, load
+from sim.results.compare import BOUND
 
 BLOCKS = [*MATERIALS, *(f"{name}-3d" for name in MATERIALS)]
 # of k, c1 and c2 in the scenes: q exp(-T / tau), T = 0.105 s from the middle of the press

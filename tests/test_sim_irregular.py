@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 
 from environment import ROOT
-from golden import materials, mesh, scene, stability
-from sim.compare import BOUND
+from golden.mesh import mesh
+from golden.physics import materials, stability
+from golden.scene import load as scene
+from sim.results.compare import BOUND
 from sim.run import run
 
 BODIES = {

@@ -5,8 +5,8 @@ import pytest
 from golden_objects import phase, scene
 from integer_objects import DT, MATERIALS, irregular, pressed
 
-from sim.image import load
-from sim.native import NativeMachine
+from sim.backends.native import NativeMachine
+from sim.encode.encode import load
 
 MILLION = 1_000_000
 

@@ -5,13 +5,13 @@ import pytest
 from integer_objects import MATERIALS, SPACING, irregular, pressed
 from rtl_objects import STATE, circuit, fan, renumbered, rtl_machine
 
-from golden.mesh import Mesh, rectangle
-from hw.latency import Latencies
+from golden.mesh.mesh import Mesh, rectangle
+from hw.machine.latency import Latencies
 from hw.parameters import Parameters
-from sim.cycles import Wavefront, cycles_per_step
-from sim.image import load
-from sim.machines import BUILD
-from sim.native import NativeMachine
+from sim.backends.machines import BUILD
+from sim.backends.native import NativeMachine
+from sim.encode.encode import load
+from sim.results.cycles import Wavefront, cycles_per_step
 from sim.speed import meshes
 from sim.speed.meshes import MESHES
 

@@ -7,12 +7,12 @@ import pytest
 import scene_text
 from sim_objects import MATERIALS, block
 
-from golden import archive
-from golden import scene as scenes
-from golden.errors import InputError
-from golden.model import Model
-from sim import energy, ranges
-from sim.compare import BOUND, compare
+from golden.physics.model import Model
+from golden.scene import archive
+from golden.scene import load as scenes
+from golden.support.errors import InputError
+from sim.results import energy, ranges
+from sim.results.compare import BOUND, compare
 from sim.run import run
 
 PHASE = "duration = 0.005\n"

@@ -10,12 +10,14 @@ import pytest
 from report_objects import FLAT, SOLID, WEIGHT
 from sim_objects import MESHES, block, in_place_of_the_circuit
 
-from golden import mesh
-from sim import energy, machines, report
-from sim.compare import compare
-from sim.face import watched
+from golden.mesh import mesh
+from sim import report
+from sim.backends import machines
 from sim.report import pack, style, surface
 from sim.report.page import brief, least, percent, si, slug
+from sim.results import energy
+from sim.results.compare import compare
+from sim.results.face import watched
 
 SHOWN = {
     "dim",

@@ -12,10 +12,11 @@ from browser import Opened, chromium
 from report_objects import FLAT, SOLID
 from sim_objects import in_place_of_the_circuit
 
-from golden.scene import load
-from sim import machines, report
-from sim.compare import compare, completed, power
+from golden.scene.load import load
+from sim import report
+from sim.backends import machines
 from sim.report.page import slug
+from sim.results.compare import compare, completed, power
 
 FLAT_ID, SOLID_ID = slug(FLAT.name), slug(SOLID.name)
 SHIPPED = Path(__file__).parents[1] / "scenes"

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from sim_objects import DT, MATERIALS, MESHES, block, in_place_of_the_circuit
 
-from golden import materials
-from golden.errors import InputError, InternalError
-from golden.formats import Formats
-from golden.machine import Machine
-from sim import machines
-from sim.compare import BOUND
+from golden.datapath.formats import Formats
+from golden.datapath.machine import Machine
+from golden.physics import materials
+from golden.support.errors import InputError, InternalError
+from sim.backends import machines
+from sim.backends.waves import found
+from sim.results.compare import BOUND
 from sim.run import CHECKS, Raw, checked_steps, run
-from sim.waves import found
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -156,7 +156,7 @@ class Wrong(Machine):
 
 @pytest.mark.parametrize("quantity", ["x", "v", "ratio", "force", "faults"])
 def test_a_wrong_compiled_model_is_found_out(quantity, monkeypatch):
-    from sim import native
+    from sim.backends import native
 
     monkeypatch.setattr(Wrong, "quantity", quantity, raising=False)
     monkeypatch.setattr(native, "NativeMachine", Wrong)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from sim_objects import DT, MATERIALS, MESHES, block
 
-from golden import materials, stability
-from golden.errors import InputError
-from golden.model import Model
+from golden.physics import materials, stability
+from golden.physics.model import Model
+from golden.support.errors import InputError
 from sim.speed import arrays, meshes, timing
 from sim.speed.compiled import CompiledModel
 
@@ -23,7 +23,7 @@ def differences(model, golden):
     """Of positions by the object's size, of velocities by the largest, of ratios."""
     largest = np.abs(golden.v).max()
     return (
-        np.abs(model.x - golden.x).max() / golden.scene.size,
+        np.abs(model.x - golden.x).max() / golden.scene.load.size,
         np.abs(model.v - golden.v).max() / largest,
         np.abs(model.a - golden.a).max(),
     )

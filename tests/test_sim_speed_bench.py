@@ -5,9 +5,10 @@ import sys
 
 import pytest
 
-from golden.errors import InputError
-from sim import cycles, steptime
+from golden.support.errors import InputError
 from sim.__main__ import main
+from sim.results import cycles
+from sim.results import step_time as steptime
 from sim.speed import bench, meshes, table, timing
 
 KEYS = [

@@ -4,7 +4,7 @@ from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from golden.graph import AXES
+from golden.numbers.graph import AXES
 
 GATHERED = len(AXES)
 """Words of a group, and cycles from each of them to what all of them have."""

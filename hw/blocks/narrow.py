@@ -4,7 +4,7 @@ from amaranth.hdl import Module, Mux, Shape, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from .multiplier import letter
+from hw.blocks.multiplier import letter
 
 
 def levels(bits: int) -> int:

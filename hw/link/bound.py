@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from ..blocks.memory import READ_LATENCY
-from ..host import LATENCY as HOST_LATENCY
-from .frame import HEADER, KEY_BYTES, PAYLOAD_MOST
-from .protocol import COUNT_MOST, ITEM_BYTES, ITEMS_MOST
-from .send import LOOK
+from hw.blocks.memory import READ_LATENCY
+from hw.link.frame import HEADER, KEY_BYTES, PAYLOAD_MOST
+from hw.link.protocol import COUNT_MOST, ITEM_BYTES, ITEMS_MOST
+from hw.link.send import LOOK
+from hw.machine.host_port import LATENCY as HOST_LATENCY
 
 # What each takes of the states of Device, Walker and Emitter, all of which last a cycle, but for those named
 ITEM = ITEM_BYTES * (READ_LATENCY + 1)  # gathered from the payload

@@ -4,7 +4,7 @@ from amaranth.hdl import Array, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from .frame import ANSWER, CRC, GREETING, KEY_BYTES
+from hw.link.frame import ANSWER, CRC, GREETING, KEY_BYTES
 
 
 class FrameCrc(wiring.Component):

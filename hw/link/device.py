@@ -4,16 +4,16 @@ from amaranth.hdl import Array, Const, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..host import host_signature
-from ..registers import INDEX_BITS, REGION_BITS, Control, Region, join
-from .emit import Emitter
-from .frame import ANSWER, HEADER
-from .pause import Pause
-from .protocol import BUSY, ITEM_BYTES, WINDOW, Operation, Status
-from .receive import EVENTS, FrameReceiver
-from .registers import LINK, LinkRegisters
-from .send import FrameSender
-from .walk import Walker
+from hw.link.emit import Emitter
+from hw.link.frame import ANSWER, HEADER
+from hw.link.pause import Pause
+from hw.link.protocol import BUSY, ITEM_BYTES, WINDOW, Operation, Status
+from hw.link.receive import EVENTS, FrameReceiver
+from hw.link.registers import LINK, LinkRegisters
+from hw.link.send import FrameSender
+from hw.link.walk import Walker
+from hw.machine.host_port import host_signature
+from hw.map.memory_map import INDEX_BITS, REGION_BITS, Control, Region, join
 
 
 class Device(wiring.Component):
@@ -38,7 +38,7 @@ class Device(wiring.Component):
     out_valid, out_data, out_ready
         To a `hw.link.uart.Transmitter`.
     port_...: request, write, address, write_data : Out; answer, error, read_data : In
-        To the host port: `hw.host`.
+        To the host port: `hw.machine.host_port`.
     busy : In(1)
     """
 

@@ -4,8 +4,8 @@ from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from .protocol import ITEM_BYTES
-from .send import ANSWER_MOST
+from hw.link.protocol import ITEM_BYTES
+from hw.link.send import ANSWER_MOST
 
 
 class Emitter(wiring.Component):

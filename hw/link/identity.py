@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import astuple, dataclass, fields
 
-from golden.formats import Formats
-
-from ..parameters import Parameters
-from ..registers import MAGIC, VERSION
-from .frame import KEY_BYTES
-from .protocol import VERSION as PROTOCOL
+from golden.datapath.formats import Formats
+from hw.link.frame import KEY_BYTES
+from hw.link.protocol import VERSION as PROTOCOL
+from hw.map.memory_map import MAGIC, VERSION
+from hw.parameters import Parameters
 
 PART = KEY_BYTES // 2
 """Bytes of the key in an item."""

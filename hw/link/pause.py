@@ -4,8 +4,8 @@ from amaranth.hdl import Module, Mux, Signal, signed
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..host import host_signature
-from ..registers import Control, Region, join
+from hw.machine.host_port import host_signature
+from hw.map.memory_map import Control, Region, join
 
 
 class Pause(wiring.Component):
@@ -26,7 +26,7 @@ class Pause(wiring.Component):
     noted : In(1), steps : In(32)
         The host began a run of so many steps, or ended it (0): nothing is left of an earlier one.
     busy : In(1)
-    port_... : the host port's, `hw.host`.
+    port_... : the host port's, `hw.machine.host_port`.
     """
 
     def __init__(self, state: int):

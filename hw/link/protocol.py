@@ -6,12 +6,11 @@ write. An answer's are the faults, then a word for each that was read and for ea
 
 from enum import IntEnum
 
-from golden import records
-from golden.qformat import BIT, unsigned
-
-from ..registers import ADDRESS_BITS
-from .frame import GREETING, HEADER
-from .send import ANSWER_MOST, ANSWERS
+from golden.datapath import records
+from golden.numbers.qformat import BIT, unsigned
+from hw.link.frame import GREETING, HEADER
+from hw.link.send import ANSWER_MOST, ANSWERS
+from hw.map.memory_map import ADDRESS_BITS
 
 VERSION = 1
 ITEM_BYTES = 5
@@ -56,8 +55,8 @@ HEAD = {
     "unused": unsigned(2, 0),
     "count": unsigned(8, 0),
 }
-"""A segment's head, a record as in `golden.records`. ``across``: words of one place behind one another, instead of
-places of one word."""
+"""A segment's head, a record as in `golden.datapath.records`. ``across``: words of one place behind one another,
+instead of places of one word."""
 
 COUNT_MOST = HEAD["count"].raw_max
 

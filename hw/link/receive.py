@@ -4,9 +4,9 @@ from amaranth.hdl import Array, Cat, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..blocks.memory import BlockRam
-from .crc import FrameCrc
-from .frame import HEADER, KEY_BYTES, LEAST, MOST, PAYLOAD_MOST
+from hw.blocks.memory import BlockRam
+from hw.link.crc import FrameCrc
+from hw.link.frame import HEADER, KEY_BYTES, LEAST, MOST, PAYLOAD_MOST
 
 SLOTS = 4
 """Frames there is room for: one that comes, those that wait, one that is worked on."""

@@ -6,8 +6,8 @@ from amaranth.hdl import Array, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..registers import INDEX_BITS, Region
-from .receive import EVENTS
+from hw.link.receive import EVENTS
+from hw.map.memory_map import INDEX_BITS, Region
 
 LINK = len(Region)
 """Number of their region, behind those of the circuit."""

@@ -4,9 +4,9 @@ from amaranth.hdl import Array, Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..blocks.memory import READ_LATENCY, BlockRam
-from .crc import FrameCrc
-from .frame import CRC_BYTES
+from hw.blocks.memory import READ_LATENCY, BlockRam
+from hw.link.crc import FrameCrc
+from hw.link.frame import CRC_BYTES
 
 ANSWERS = 8
 """Answers that are kept: as many as commands may be under way."""

@@ -4,15 +4,15 @@ from amaranth.hdl import Cat, Module, ResetSignal, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..core import Core
-from ..description import key
-from ..families import FAMILIES
-from ..host import host_signature
-from ..parameters import Parameters
-from ..verilog import TOP, Placed, convert, emit
-from .device import Device
-from .identity import Identity
-from .uart import Receiver, Transmitter, cycles_per_bit
+from hw.emit.verilog import TOP, Placed, convert, emit
+from hw.families import FAMILIES
+from hw.link.description import key
+from hw.link.device import Device
+from hw.link.identity import Identity
+from hw.link.uart import Receiver, Transmitter, cycles_per_bit
+from hw.machine.core import Core
+from hw.machine.host_port import host_signature
+from hw.parameters import Parameters
 
 LINKED = "rheogate_linked"
 

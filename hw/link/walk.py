@@ -4,12 +4,12 @@ from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..blocks.memory import READ_LATENCY
-from ..fields import unpack
-from ..host import host_signature
-from ..registers import INDEX_BITS, WORD_BITS, Control, Region, join
-from .frame import CRC, PAYLOAD_MOST
-from .protocol import HEAD, ITEM_BYTES, ITEMS_MOST, Kind
+from hw.blocks.memory import READ_LATENCY
+from hw.link.frame import CRC, PAYLOAD_MOST
+from hw.link.protocol import HEAD, ITEM_BYTES, ITEMS_MOST, Kind
+from hw.machine.host_port import host_signature
+from hw.map.fields import unpack
+from hw.map.memory_map import INDEX_BITS, WORD_BITS, Control, Region, join
 
 FARTHEST = PAYLOAD_MOST + ITEM_BYTES * HEAD["count"].raw_max
 """Where the payload would end, if the words of a write are not all there."""
@@ -37,7 +37,7 @@ class Walker(wiring.Component):
         To a `hw.link.emit.Emitter`.
     noted : Out(1), steps : Out(32)
         A run was begun, of so many steps, or ended (0).
-    port_... : the host port's, `hw.host`.
+    port_... : the host port's, `hw.machine.host_port`.
     """
 
     def __init__(self, state: int):

@@ -11,8 +11,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import ListedColormap, Normalize
 
-from golden.mesh import Mesh
-from golden.trajectory import Trajectory
+from golden.mesh.mesh import Mesh
+from golden.physics.trajectory import Trajectory
 from sim.figures import paper
 from sim.figures.runs import Pair
 from sim.report.surface import once, outline, projected, surface, visible

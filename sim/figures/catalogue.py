@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from golden.errors import InputError
+from golden.support.errors import InputError
 from sim.figures import reading
 from sim.figures.reading import Reading
 from sim.figures.runs import EDGE, Pair

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
-from golden.trajectory import Trajectory
+from golden.physics.trajectory import Trajectory
 from sim.figures import paper, reading
 from sim.figures.body import STRAIN, Body
 from sim.figures.film import Film

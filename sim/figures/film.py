@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
-from golden.files import replaced
+from golden.support.files import replaced
 from sim.figures import body, paper
 
 DPI = 100

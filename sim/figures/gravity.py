@@ -5,13 +5,13 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from sim.compare import power
 from sim.figures import paper, reading
 from sim.figures.body import RATIO, Body
 from sim.figures.curves import Dot
 from sim.figures.film import Film
 from sim.figures.runs import Pair
 from sim.report import style
+from sim.results.compare import power
 
 X, Y = (-9, 111), (-3, 104)  # mm, around the block
 SCALE = 0.0125  # inches per mm

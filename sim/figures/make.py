@@ -11,13 +11,13 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from golden.errors import InputError
-from golden.files import replaced, write_text
-from golden.problem import Scene
-from sim import batch
+from golden.physics.scene import Scene
+from golden.support.errors import InputError
+from golden.support.files import replaced, write_text
 from sim.figures import film, paper, reading, runs
 from sim.figures.catalogue import FIGURES
 from sim.figures.runs import Pair
+from sim.support import batch
 
 DATA = "figures.json"
 DPI = 300
@@ -31,7 +31,7 @@ def scenes(names: list[str]) -> list[Scene]:
 
 
 def compute(loaded: list[Scene], backend: str, shown: Callable | None = None) -> dict[str, Pair]:
-    """The runs of the scenes, by name; ``shown`` as of `sim.batch.over_scenes`."""
+    """The runs of the scenes, by name; ``shown`` as of `sim.support.batch.over_scenes`."""
     pairs = batch.over_scenes(partial(runs.pair, backend=backend), loaded, shown)
     return {pair.scene.name: pair for pair in pairs}
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from sim.compare import power
 from sim.figures import curves, paper, reading
 from sim.figures.body import STRAIN, Body
 from sim.figures.film import Film
 from sim.figures.runs import Pair
+from sim.results.compare import power
 
 X, Y = (-10, 112), (-8, 103)  # mm, around the block
 ROOM = 90  # mm beside the last drawing, for what was measured

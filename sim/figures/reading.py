@@ -6,11 +6,11 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from golden.problem import Scene
-from golden.trajectory import Trajectory
-from sim.compare import BOUND
+from golden.physics.scene import Scene
+from golden.physics.trajectory import Trajectory
 from sim.figures import single_edge
 from sim.figures.runs import EDGE, Pair
+from sim.results.compare import BOUND
 
 RECOVERY, BULGE = 1e-3, 1e-4
 """Largest differences that pass: of bounce-back and residual, and of the bulge of a side by the object's size."""

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 
-from golden import scene as scenes
-from golden.problem import Scene
-from golden.trajectory import Trajectory
-from sim.compare import dx_rel
-from sim.face import Face, watched
+from golden.physics.scene import Scene
+from golden.physics.trajectory import Trajectory
+from golden.scene import load as scenes
+from golden.support.paths import SCENES
 from sim.figures import single_edge
+from sim.results.compare import dx_rel
+from sim.results.face import Face, watched
 from sim.run import Result, run
 
-SHIPPED = Path(__file__).parents[2] / "scenes"
+SHIPPED = SCENES
 EDGE = "edge-"
 """Before the name of a shipped scene: a single edge of that scene's first material."""
 

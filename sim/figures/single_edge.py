@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from golden import stability
-from golden.materials import Material
-from golden.mesh import Mesh
-from golden.problem import Phase, Scene
+from golden.mesh.mesh import Mesh
+from golden.physics import stability
+from golden.physics.materials import Material
+from golden.physics.scene import Phase, Scene
 
 LENGTH, DEPTH = 0.1, 0.025  # m, as high as the blocks that ship and pressed as deep
 MASS = 5e-3  # kg of its upper end: light enough that nothing swings

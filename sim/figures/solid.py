@@ -7,14 +7,14 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.figure import Figure
 
-from golden.problem import Scene
-from golden.trajectory import Trajectory
-from sim.compare import power
+from golden.physics.scene import Scene
+from golden.physics.trajectory import Trajectory
 from sim.figures import curves, paper, reading
 from sim.figures.body import STRAIN, Body
 from sim.figures.film import Film
 from sim.figures.runs import Pair
 from sim.report.surface import outline, projected
+from sim.results.compare import power
 
 SCALE, PLAN_SCALE = 0.0101, 0.0118  # inches per mm of all solid objects, and of what is seen from above
 MARGIN = np.array([7, 3])  # mm around a drawing, for the bulge

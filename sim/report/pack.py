@@ -6,12 +6,12 @@ from base64 import b64encode
 
 import numpy as np
 
-from golden.formats import Formats
-from golden.problem import Scene
-from sim import energy
-from sim.compare import BOUND, Comparison
-from sim.face import watched
+from golden.datapath.formats import Formats
+from golden.physics.scene import Scene
 from sim.report.surface import outline, surface
+from sim.results import energy
+from sim.results.compare import BOUND, Comparison
+from sim.results.face import watched
 
 BUDGET = 800_000  # bytes of a scene's frames before base64 makes them a third longer
 MOST = 240  # frames

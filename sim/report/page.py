@@ -10,12 +10,12 @@ from pathlib import Path
 import jinja2
 from matplotlib.colors import to_hex
 
-from golden.files import write_text
-from golden.problem import Scene
-from sim import ranges, stored
-from sim.compare import Comparison, compare, completed, power, shortcomings
-from sim.errors import about
+from golden.physics.scene import Scene
+from golden.support.files import write_text
 from sim.report import pack, style
+from sim.results import ranges, stored
+from sim.results.compare import Comparison, compare, completed, power, shortcomings
+from sim.support.errors import about
 
 FOLDER = Path(__file__).parent
 DATA = "compare.json"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from golden.mesh import Mesh
+from golden.mesh.mesh import Mesh
 
 AZIMUTH, ELEVATION = np.radians(-60), np.radians(17)
 RIGHT = np.array([-np.sin(AZIMUTH), np.cos(AZIMUTH), 0])

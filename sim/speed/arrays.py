@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from golden.errors import InputError
-from golden.problem import Phase, Scene
+from golden.physics.scene import Phase, Scene
+from golden.support.errors import InputError
 
 RATIO, BASE, TOTAL, RHO_K, RHO_K_L, RHO_C1, SLIP, LOW, HIGH = range(9)
 """Rows of ``Arrays.edge``: the ratio at the stage, before the step, the sum of its changes so far; with
@@ -113,7 +113,7 @@ def rows(values, dtype) -> np.ndarray:
 
 
 def begin(arrays: Arrays, scene: Scene, phase: Phase) -> None:
-    """Put the object under a phase's constraints and loads, as `golden.model.Model.begin` does."""
+    """Put the object under a phase's constraints and loads, as `golden.physics.model.Model.begin` does."""
     dim, mass, nodes = scene.dim, scene.mass, len(scene.mass)
     arrays.mobility[:nodes] = np.where(phase.held, 0, 1 / mass)
     arrays.drift[:, :nodes] = np.where(phase.held, 0, (phase.load / mass[:, None] + scene.gravity).T)

@@ -8,12 +8,12 @@ import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from golden.errors import InputError
-from golden.files import write_text
-from golden.problem import Scene
-from golden.rk4 import RK4
-from sim.errors import about
+from golden.datapath.rk4 import RK4
+from golden.physics.scene import Scene
+from golden.support.errors import InputError
+from golden.support.files import write_text
 from sim.speed import meshes
+from sim.support.errors import about
 
 CIRCUITS = (1, 1), (2, 1), (4, 1), (4, 2), (6, 2)
 """(lanes, updates): edge processors, and nodes updated in a cycle."""

@@ -1,4 +1,4 @@
-"""The compiled float model: `golden.model.Model` with linear dampers, as fast as Numba makes it."""
+"""The compiled float model: `golden.physics.model.Model` with linear dampers, as fast as Numba makes it."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from threading import Thread
 
 import numpy as np
 
-from golden.errors import InputError
-from golden.problem import Phase, Scene
+from golden.physics.scene import Phase, Scene
+from golden.support.errors import InputError
 from sim.speed import arrays
 from sim.speed.kernel import run
 
 
 class CompiledModel:
-    """An object in motion, as `golden.model.Model`: it starts at rest, under the scene's first phase.
+    """An object in motion, as `golden.physics.model.Model`: it starts at rest, under the scene's first phase.
 
     Parameters
     ----------

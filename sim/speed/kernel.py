@@ -1,4 +1,5 @@
-"""A Runge-Kutta step of `golden.model`, compiled by Numba: the float software that the circuit is measured against.
+"""A Runge-Kutta step of `golden.physics.model`, compiled by Numba: the float software that the circuit is measured
+against.
 
 Threads share edges and nodes by ranges. An edge writes its own pull, a node then sums its edges' pulls in a fixed
 order: no two threads write to the same place, and nothing depends on which one is faster.

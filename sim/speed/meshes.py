@@ -6,9 +6,10 @@ import re
 
 import numpy as np
 
-from golden import materials, mesh
-from golden.errors import InputError
-from golden.problem import Phase, Scene
+from golden.mesh import mesh
+from golden.physics import materials
+from golden.physics.scene import Phase, Scene
+from golden.support.errors import InputError
 
 MESHES = "9x9", "23x23", "5x5x5", "6x6x6", "8x8x8", "4x4x32"
 """Nodes along each axis."""

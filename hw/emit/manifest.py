@@ -1,0 +1,90 @@
+"""What goes with the Verilog: everything that a driver, or a reader, has to know about this very circuit."""
+
+import hashlib
+
+from amaranth.hdl import Shape
+from amaranth.lib.wiring import In
+
+from hw.link.description import description, dump
+from hw.machine.core import Core
+from hw.machine.latency import latencies
+from hw.parameters import Parameters
+
+DESIGN = "rheogate"
+
+PORTS = {
+    "clk": "the one clock, rising edge",
+    "rst": "synchronous; memories keep their contents",
+    "request": "1 for every cycle in which address, write and write_data are a request",
+    "write": "1: write_data is to be written; 0: the word is to be read",
+    "address": "see address",
+    "write_data": "a word, lowest bits first",
+    "answer": "1 in the cycle of a request's answer; answers come in order",
+    "error": "with an answer: the request was refused and nothing was changed",
+    "read_data": "with an answer: what was read, 0 if refused",
+    "busy": "1 while steps are run",
+}
+
+
+def manifest(core: Core, verilog: str, key: str) -> dict:
+    """The manifest of the circuit whose text is ``verilog``; ``key`` tells what it was made from."""
+    p = core.parameters
+    contents = {
+        "design": DESIGN,
+        "key": key,
+        "parameters": parameters(p),
+        "files": {"rheogate.v": {"sha256": digest(verilog), "bytes": len(verilog.encode())}},
+        "ports": _ports(core),
+        **description(p),
+        "latencies": [{"of": of, "from_to": what, "cycles": cycles} for of, what, cycles in latencies(p)],
+        "pipelines": {
+            "edge": _pipeline(core.datapath.schedule),
+            "node": _pipeline(core.node_datapath.schedule),
+        },
+    }
+    return contents | {"sha256": own_digest(contents)}
+
+
+def parameters(p: Parameters) -> dict:
+    return {
+        "lanes": p.lanes,
+        "updates": p.updates,
+        "nodes": p.nodes,
+        "edges": p.edges,
+        "rows": p.rows,
+        "materials": p.materials,
+        "tables": p.tables,
+        "axes": p.axes,
+        "operand": p.formats.operand,
+        "state": p.formats.state,
+        "family": p.family,
+    }
+
+
+def digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def own_digest(contents: dict) -> str:
+    """Of the manifest without its own hash, as `dump` writes it."""
+    return digest(dump({name: value for name, value in contents.items() if name != "sha256"}))
+
+
+def _ports(core):
+    members = core.signature.members.items()
+    ports = {"clk": ("in", 1), "rst": ("in", 1)}
+    ports |= {name: ("in" if member.flow == In else "out", Shape.cast(member.shape).width) for name, member in members}
+    return [
+        {"name": name, "direction": direction, "bits": bits, "meaning": PORTS[name]}
+        for name, (direction, bits) in ports.items()
+    ]
+
+
+def _pipeline(schedule):
+    return {
+        "cycles": schedule.latency,
+        "arrival": schedule.arrival,
+        "operations": [
+            {"name": name, "operation": kind, "from": start, "to": end} for name, kind, start, end in schedule.stages()
+        ],
+    }

@@ -1,0 +1,108 @@
+"""What a driver has to know about a circuit: one description for manifest, C header, page and the link's key."""
+
+import hashlib
+import json
+
+from golden.numbers.qformat import Q
+from hw.link import protocol
+from hw.link.frame import KEY_BYTES
+from hw.link.identity import IDENTITY_TEXT
+from hw.link.registers import LINK, LINK_TEXT, Link
+from hw.machine.core import datapaths, faults
+from hw.map.memory_map import (
+    CONTROL_TEXT,
+    INDEX_BITS,
+    LANE_BITS,
+    READ_ONLY,
+    REGION_BITS,
+    VERSION,
+    WORD_BITS,
+    Control,
+    Map,
+    Region,
+)
+from hw.parameters import Parameters
+
+
+def description(p: Parameters) -> dict:
+    """The map of the memory, registers, faults, formats, and what is said over the link; in plain types."""
+    memory = Map(p)
+    return {
+        "map_version": VERSION,
+        "address": _address(),
+        "regions": [_region(memory, region) for region in Region],
+        "registers": [_register(r, r in READ_ONLY, CONTROL_TEXT) for r in Control],
+        "faults": [{"bit": bit, "name": name} for bit, name in enumerate(faults(*datapaths(p)))],
+        "formats": [{"name": q.name, **_format(q), "unit": q.unit} for q in p.formats.all()],
+        "link": {
+            "version": protocol.VERSION,
+            "region": LINK,
+            "registers": [_register(r, False, LINK_TEXT) for r in Link],
+            "operations": _numbered(protocol.OPERATION_TEXT),
+            "kinds": _numbered(protocol.KIND_TEXT),
+            "statuses": _numbered(protocol.STATUS_TEXT),
+            "busy": protocol.BUSY,
+            "head": _fields(protocol.HEAD),
+            "identity": [{"item": n, "name": name, "meaning": text} for n, (name, text) in enumerate(IDENTITY_TEXT)],
+        },
+    }
+
+
+def key(p: Parameters) -> bytes:
+    """What the CRC of a frame begins with: another description, another key."""
+    return hashlib.sha256(dump(description(p)).encode()).digest()[:KEY_BYTES]
+
+
+def dump(contents: dict) -> str:
+    return json.dumps(contents, indent=1) + "\n"
+
+
+def _register(register, read_only, texts):
+    return {
+        "index": register.value,
+        "name": register.name,
+        "read_only": read_only,
+        "meaning": texts[register],
+    }
+
+
+def _numbered(texts):
+    return [{"number": member.value, "name": member.name, "meaning": text} for member, text in texts.items()]
+
+
+def _address():
+    fields, low = [], 0
+    for name, bits in (("index", INDEX_BITS), ("word", WORD_BITS), ("lane", LANE_BITS), ("region", REGION_BITS)):
+        fields.append({"name": name, "low": low, "bits": bits})
+        low += bits
+    return fields
+
+
+def _region(memory: Map, region: Region):
+    return {
+        "number": region.value,
+        "name": region.name,
+        "depth": memory.depth(region),
+        "lanes": memory.lanes(region),
+        "words": [
+            {
+                "number": number,
+                "name": word,
+                "read_only": memory.read_only(region, word),
+                "fields": _fields(memory.fields(region, word)),
+            }
+            for number, word in enumerate(memory.words(region))
+        ],
+    }
+
+
+def _fields(record: dict[str, Q]):
+    fields, low = [], 0
+    for name, q in record.items():
+        fields.append({"name": name, "low": low, **_format(q)})
+        low += q.width
+    return fields
+
+
+def _format(q: Q):
+    return {"bits": q.width, "signed": q.signed, "fraction_bits": q.frac_bits}

@@ -1,0 +1,31 @@
+"""One of many words, four at a time, with a register behind each choice."""
+
+from amaranth.hdl import Array, Module, Signal
+
+from hw.pipeline.delay import DelayLines
+
+BITS = 2
+WAYS = 1 << BITS
+
+
+def choose(m: Module, lines: DelayLines, words: list, index, *, cycles: int, name: str, ahead: int = 0) -> Signal:
+    """``words[index]``, ``cycles`` after the words and ``ahead + cycles`` after the index. An index beyond the words
+    may give any of them.
+
+    Raises
+    ------
+    ValueError
+        If there are more words than can be chosen from in so many cycles.
+    """
+    if len(words) > WAYS**cycles:
+        raise ValueError(f"words must be at most {WAYS**cycles} to choose from in {cycles} cycles, not {len(words)}")
+    for level in range(cycles):
+        groups = [words[first : first + WAYS] for first in range(0, len(words), WAYS)]
+        if len(words) > 1:
+            way = lines.later(index[BITS * level : BITS * (level + 1)], ahead + level, name=f"{name}_way{level}")
+        words = []
+        for number, group in enumerate(groups):
+            chosen = Signal(max(map(len, group)), name=f"{name}_{level}_{number}", reset_less=True)
+            m.d.sync += chosen.eq(Array(group)[way] if len(group) > 1 else group[0])
+            words.append(chosen)
+    return words[0]

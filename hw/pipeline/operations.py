@@ -1,0 +1,249 @@
+"""The operations of `golden.numbers.graph` as combinational steps; `hw.pipeline.pipe` puts registers between them.
+
+Each function takes ``wire``, a node of the graph and its operands' values, and yields one tuple of values after each
+step, the result first. A register may follow any of them: the next step is given what the one before yielded,
+registered or not. ``wire(value)`` gives a value that is used more than once a signal of its own, so that the Verilog
+says it once; ``wire.shifted(x, times, places, left=)`` is a `hw.blocks.shifter.ShiftStage`.
+"""
+
+import functools
+import itertools
+import operator
+
+from amaranth.hdl import Cat, Const, Mux, Shape, Value
+
+from golden.numbers.qformat import Q
+
+
+def shape(q: Q) -> Shape:
+    return Shape(q.width, q.signed)
+
+
+def negative(x: Value) -> Value:
+    return x[-1] if x.shape().signed else Const(0)
+
+
+def either(bit: Value, yes: Value, no: Value) -> Value:
+    """``Mux``, which is nothing where the bit is known to be 0."""
+    return no if never(bit) else Mux(bit, yes, no)
+
+
+def never(bit: Value) -> bool:
+    return isinstance(bit, Const) and not bit.value
+
+
+def aligned(*operands):
+    """Values whose lowest bits mean the same, from (value, format) pairs."""
+    frac = max(q.frac_bits for _, q in operands)
+    return [value << frac - q.frac_bits for value, q in operands]
+
+
+def _pair(node, a, b):
+    first, second = node.operands[-2:]
+    return aligned((a, first.fmt), (b, second.fmt))
+
+
+def add(wire, node, a, b):
+    x, y = _pair(node, a, b)
+    yield (x + y,)
+
+
+def total(wire, node, *terms):
+    """Three by three: synthesis makes one carry chain of each three."""
+    terms = aligned(*((x, operand.fmt) for x, operand in zip(terms, node.operands, strict=True)))
+    while len(terms) > 3:
+        terms = yield tuple(wire(sum(terms[first : first + 3])) for first in range(0, len(terms), 3))
+    yield (sum(terms),)
+
+
+def sub(wire, node, a, b):
+    x, y = _pair(node, a, b)
+    yield (x - y,)
+
+
+def less(wire, node, a, b):
+    x, y = _pair(node, a, b)
+    yield (x < y,)
+
+
+def select(wire, node, bit, yes, no):
+    x, y = _pair(node, yes, no)
+    yield (Mux(bit, x, y),)
+
+
+def absolute(wire, node, a):
+    yield (Mux(negative(a), -a, a),)
+
+
+def lead(wire, node, *vector):
+    """Leading zeros of the OR of all magnitudes, first of groups of bits."""
+    magnitude = Const(0)
+    for x in vector:
+        magnitude |= size(x)
+    magnitude = wire(magnitude)[-node.detail :]
+    groups = [slice(max(0, low), low + GROUP) for low in range(node.detail - GROUP, -GROUP, -GROUP)]
+    magnitude, some = yield magnitude, Cat(magnitude[group].any() for group in groups)
+    yield (_leading_zeros([(bit, magnitude[group]) for bit, group in zip(some, groups, strict=True)]),)
+
+
+def size(x: Value) -> Value:
+    """What has the leading zeros of a number's size: its bits, those of a negative number inverted."""
+    return (x[:-1] ^ x[-1].replicate(len(x) - 1)) if x.shape().signed else x
+
+
+GROUP = 4
+"""Bits whose leading zeros are counted together."""
+
+
+def _leading_zeros(groups) -> Value:
+    """Of (whether a bit is 1, bits), the uppermost first, as a tree: the count of the upper half of the groups, or its
+    bits and the count of the lower."""
+    if len(groups) == 1:
+        ((_, bits),) = groups
+        zeros = Const(len(bits))
+        for number, bit in enumerate(bits):
+            zeros = Mux(bit, len(bits) - 1 - number, zeros)
+        return zeros
+    half = 1 << (len(groups) - 1).bit_length() - 1
+    upper, lower = groups[:half], groups[half:]
+    some = Cat(bit for bit, _ in upper).any()
+    return Mux(some, _leading_zeros(upper), half * GROUP + _leading_zeros(lower))
+
+
+def shift_left(wire, node, x, count):
+    """Bits that leave at the top are redundant (`lead`)."""
+    low = len(count) // 4 * 2
+    x = _shifted(wire, x, count, low, left=True)
+    x, count = yield x, count[:low]
+    yield (_shifted(wire, x, count, left=True),)
+
+
+def _shifted(wire, x, count, low=0, *, left):
+    """By the count's bits from ``low`` on, two at a time."""
+    stages = [slice(max(low, bit - 2), bit) for bit in range(len(count), low, -2)]
+    for bits in stages:
+        x = wire.shifted(x, count[bits], 1 << bits.start, left=left)
+    return x
+
+
+def round_half_up(wire, node, x):
+    """Operand's fraction bits beyond the format's are dropped, then the result saturates; second value: the fault."""
+    source, target = node.operands[0].fmt, node.fmt
+    drop = source.frac_bits - target.frac_bits
+    if drop <= 0:
+        value = x << -drop
+        yield _saturate(target, value, value)
+    else:
+        yield _saturate(target, wire((x + (1 << drop - 1)) >> drop), x >> drop)
+
+
+def shift_right(wire, node, x, count):
+    """Rounds, or cuts, and saturates ``x * 2**-count``, the count as `shift_count` gives it; second value: the
+    fault."""
+    target = node.fmt
+    drop = max(0, node.operands[0].fmt.frac_bits - target.frac_bits)
+    x = x << _grown(node)
+    some = left = below = Const(0)
+    if node.operands[1].fmt.signed:
+        some, left, below = Cat(x[low : low + 8].any() for low in range(0, len(x), 8)), count[-1], negative(x)
+    count = count[:-1]
+    low = len(count) // 4 * 2
+    x = _shifted(wire, x, count, low, left=False)
+    x, count, some, left, below = yield x, count[:low], some, left, below
+    beyond = some if never(some) else left & some.any()
+    x = _shifted(wire, x, count, left=False)
+    x, beyond, below = yield x >> drop, beyond, below
+    floor = x >> _rounding_bits(node)
+    result, fault = _saturate(target, floor if node.detail == "cut" else wire((x + 1) >> 1), floor)
+    extreme = either(below, Const(target.raw_min, shape(target)), Const(target.raw_max, shape(target)))
+    yield either(beyond, extreme, result), fault if never(beyond) else fault | beyond
+
+
+def shift_count(node, count):
+    """What a right shift makes of its count, which may be known earlier than the number: how far, in bits enough to
+    leave nothing of any number, and whether to the left."""
+    source = node.operands[0].fmt
+    bits = (source.width + _grown(node)).bit_length()
+    left = negative(count)
+    amount = count[: min(bits, len(count))]
+    if bits < len(count):
+        amount |= (~left & count[bits:].any()).replicate(bits)
+    return Cat(amount[:bits], left)
+
+
+def _grown(node) -> int:
+    """Places that a number gets before its right shift."""
+    return _rounding_bits(node) + max(0, node.fmt.frac_bits - node.operands[0].fmt.frac_bits)
+
+
+def _rounding_bits(node) -> int:
+    """Bits that a shifted number has more than its result, to round with."""
+    return int(node.detail != "cut")
+
+
+def _saturate(target: Q, rounded, floor):
+    """(result, fault): see `golden.numbers.qarray.QArray.to`. What is below the range is its end whether it is rounded
+    up or not, and a number within it can only be rounded to its upper end: so the carries are awaited but once."""
+    above, below = _above(target, floor), _below(target, floor)
+    over = Const(0)
+    if rounded is not floor and not never(_above(target, rounded)):
+        over = ~negative(floor) & rounded[target.width - target.signed]
+    result = either(any_of(above, over), Const(target.raw_max, shape(target)), rounded)
+    result = either(below, Const(target.raw_min, shape(target)), result)
+    return result, any_of(above, _below(target, rounded))
+
+
+def any_of(*bits: Value) -> Value:
+    """``|``, without what is known to be 0."""
+    return functools.reduce(operator.or_, [bit for bit in bits if not never(bit)] or [Const(0)])
+
+
+def _above(target: Q, value: Value) -> Value:
+    """Whether ``value`` is above the target's range: a positive number with one of the bits beyond."""
+    magnitude = len(value) - value.shape().signed
+    beyond = value[min(target.width - target.signed, magnitude) : magnitude]
+    return ~negative(value) & beyond.any() if len(beyond) else Const(0)
+
+
+def _below(target: Q, value: Value) -> Value:
+    """Whether ``value`` is below the target's range: a negative number without one of the bits beyond."""
+    if not target.signed:
+        return negative(value)
+    beyond = value[min(target.width, len(value)) - 1 : -1]
+    return negative(value) & ~beyond.all() if len(beyond) and value.shape().signed else Const(0)
+
+
+STEPS = {
+    "sum": total,
+    "add": add,
+    "sub": sub,
+    "less": less,
+    "select": select,
+    "abs": absolute,
+    "lead": lead,
+    "shift_left": shift_left,
+    "round": round_half_up,
+    "shift_right": shift_right,
+}
+
+
+def step_count(node) -> int:
+    """Steps of a node's operation."""
+    if node.kind == "sum":
+        return next(steps for steps in itertools.count(1) if 3**steps >= len(node.operands))
+    return {"lead": 2, "shift_left": 2, "shift_right": 3}.get(node.kind, 1)
+
+
+def field(node, x):
+    """Wires only: bits of the operand, or the operand as it is in another format."""
+    if node.kind == "field":
+        x = x[node.detail : node.detail + node.fmt.width]
+    elif node.kind == "part":
+        low = 0
+        _, word = node.operands[0].detail
+        for name, q in word.items():
+            if name == node.detail:
+                break
+            low += q.width
+        x = x[low : low + node.fmt.width]
+    return x.as_signed() if node.fmt.signed else x.as_unsigned()

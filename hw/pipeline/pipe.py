@@ -1,0 +1,179 @@
+"""From a datapath's graph (`golden.numbers.graph`) to a pipeline: its registers follow from the schedule."""
+
+import itertools
+
+from amaranth.hdl import Cat, Const, Module, Signal, Value
+
+from golden.numbers.graph import Node
+from hw.blocks.gather import Gather
+from hw.blocks.multiplier import Multiplier
+from hw.blocks.narrow import NarrowMultiplier
+from hw.blocks.shifter import ShiftStage
+from hw.pipeline.delay import DelayLines
+from hw.pipeline.operations import STEPS, field, never, shape, shift_count, size, step_count
+from hw.pipeline.schedule import WIRES, Schedule, behind_wires
+
+FAULT_LATENCY = 1
+"""Cycles from a value to its fault."""
+
+
+class Pipe:
+    """The registers and multipliers of a scheduled graph, written into a module; `build` ends it.
+
+    Parameters
+    ----------
+    m : Module
+    schedule : Schedule
+    inputs : dict of str to Value
+        Each in its cycle: 0, or ``schedule.arrival``.
+    valid : Value
+        1 in cycle 0 of an item: gates its faults.
+    tables : dict of str to callable
+        ``tables[name](address values)`` gives a table's word ``schedule.cost.read`` cycles later.
+
+    Attributes
+    ----------
+    faults : dict of str to Value
+        1 `FAULT_LATENCY` cycles after a fault of that name has happened.
+    """
+
+    def __init__(self, m: Module, schedule: Schedule, inputs, valid, tables=None):
+        self._m, self._schedule, self._inputs, self._tables = m, schedule, inputs, tables or {}
+        self._delays, self._results = DelayLines(m), {}
+        self._valid = valid
+        self._faults: dict[str, list] = {}
+        # The terms of a sum come from all over the device, and it has more to do in its cycle than others
+        sums = [node for node in schedule.graph.nodes if node.kind == "sum"]
+        self._summed = {behind_wires(term) for node in sums for term in node.operands}
+        for node in schedule.graph.nodes:
+            if node in schedule.start:
+                self._emit(node)
+        for name, node in schedule.graph.faults:
+            self._report(name, self.at(node, schedule.cycle[node]), schedule.cycle[node])
+        self.faults = {name: Cat(*bits).any() for name, bits in self._faults.items()}
+
+    def output(self, name: str, cycle: int | None = None):
+        """The value of an output in its cycle, or delayed to a later one."""
+        node = self._schedule.graph.outputs[name]
+        return self.at(node, self._schedule.cycle[node] if cycle is None else cycle)
+
+    def build(self):
+        """The delay lines, when all outputs have been asked for."""
+        self._delays.build()
+
+    def valid(self, cycle: int):
+        """1 when the item that is in ``cycle`` is a valid one."""
+        return self._delays.later(self._valid, cycle, name="valid", reset=True)
+
+    def at(self, node: Node, cycle: int):
+        """A node's value in ``cycle``; delay lines are shared."""
+        if node.kind == "const":
+            return Const(node.detail, shape(node.fmt))
+        if node.kind in WIRES:
+            return field(node, self.at(node.operands[0], cycle))
+        if node.kind == "input":
+            return self._input(node, cycle)
+        start, done = self._schedule.start[node], self._schedule.cycle[node]
+        return self._delays.later(self._results[node], cycle - done, name=node.name, wire=start == done)
+
+    def _input(self, node, cycle):
+        first = self._schedule.cycle[node]
+        if first is None:  # late, or static and then the same in every cycle
+            first = self._schedule.arrival.get(node.name, cycle)
+        return self._delays.later(self._inputs[node.name], cycle - first)
+
+    def _emit(self, node: Node):
+        start, done = self._schedule.start[node], self._schedule.cycle[node]
+        operands = [self._operand(node, number, start) for number in range(len(node.operands))]
+        if node.kind == "mul":
+            result = self._product(node, operands, done - start)
+        elif node.kind == "read":
+            result = self._tables[node.detail[0]](*operands)
+        elif node.kind == "gather":
+            result = self._gathered(node, *operands)
+        else:
+            result, *fault = self._steps(node, operands)
+            if fault:
+                self._report(node.fmt.name, fault[0], done)
+        self._results[node] = result
+
+    def _product(self, node, operands, registers):
+        narrow = self._schedule.cost.narrow_product(node)
+        make, (a, b) = (NarrowMultiplier, sorted(operands, key=len)[::-1]) if narrow else (Multiplier, operands)
+        how = {} if narrow else {"apart": node in self._summed}
+        self._m.submodules[node.name] = multiplier = make(a.shape(), b.shape(), registers=registers, **how)
+        self._m.d.comb += [multiplier.a.eq(a), multiplier.b.eq(b)]
+        return multiplier.product
+
+    def _gathered(self, node, x, first):
+        self._m.submodules[node.name] = gather = Gather(width=node.fmt.width)
+        self._m.d.comb += [gather.i.eq(size(x)), gather.first.eq(first)]
+        return gather.o
+
+    def _operand(self, node, number, start):
+        """In the operation's first cycle. A count is made ready for its shift, with as many registers behind it, two at
+        most, as it is known before."""
+        if (node.kind, number) != ("shift_right", 1):
+            return self.at(node.operands[number], start)
+        count = node.operands[1]
+        before = next(cycles for cycles in (2, 1, 0) if not cycles or self._schedule.known(count, start - cycles))
+        ready = shift_count(node, self.at(count, start - before))
+        if not before:
+            return ready
+        register = Signal(len(ready), name=f"{node.name}_count", reset_less=True)
+        self._m.d.sync += register.eq(ready)
+        return self._delays.later(register, before - 1)
+
+    def _steps(self, node, operands):
+        """The operation's values, the registers that it costs behind the last of its steps."""
+        count, cost = step_count(node), self._schedule.cycle[node] - self._schedule.start[node]
+        steps = STEPS[node.kind](_Wires(self._m, node.name), node, *operands)
+        values = next(steps)
+        for step in range(1, count):
+            if count - step < cost:
+                values = self._register([f"{node.name}_s{step}_{n}" for n in range(len(values))], values)
+            values = steps.send(values)
+        if not node.fmt.name:  # saturates without a word
+            values = values[:1]
+        names = [node.name, f"{node.name}_fault"][: len(values)]
+        result = Signal(shape(node.fmt), name=node.name, reset_less=True)
+        self._m.d["sync" if cost else "comb"] += result.eq(values[0])
+        rest = self._register(names[1:], values[1:]) if cost else values[1:]
+        values = (result, *rest)
+        for extra in range(count, cost):
+            values = self._register([f"{name}_r{extra}" for name in names], values)
+        return values
+
+    def _register(self, names, values):
+        registers = []
+        for name, value in zip(names, values, strict=True):
+            if isinstance(value, Const) or not len(value):
+                registers.append(value)
+                continue
+            registers.append(Signal(value.shape(), name=name, reset_less=True))
+            self._m.d.sync += registers[-1].eq(value)
+        return tuple(registers)
+
+    def _report(self, name, bit, cycle):
+        reports = self._faults.setdefault(name, [])
+        if not never(bit):
+            reports.append(Signal(name=f"{name.replace(' ', '_')}_reported_{len(reports)}"))
+            self._m.d.sync += reports[-1].eq(bit & self.valid(cycle))
+
+
+class _Wires:
+    """Values of an operation that get a signal of their own: see `hw.pipeline.operations`."""
+
+    def __init__(self, m: Module, name: str):
+        self._m, self._name, self._numbers = m, name, itertools.count(1)
+
+    def __call__(self, value) -> Signal:
+        signal = Signal(value.shape(), name=f"{self._name}_w{next(self._numbers)}")
+        self._m.d.comb += signal.eq(value)
+        return signal
+
+    def shifted(self, x, times, places: int, *, left: bool) -> Value:
+        stage = ShiftStage(x.shape(), len(times), places, left=left)
+        self._m.submodules[f"{self._name}_by_{places}"] = stage
+        self._m.d.comb += [stage.i.eq(x), stage.times.eq(times)]
+        return stage.o.as_signed() if x.shape().signed else stage.o

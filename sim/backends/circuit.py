@@ -1,0 +1,82 @@
+"""A circuit, simulated or on a board, loaded with an image: the same face as `golden.datapath.machine.Machine`."""
+
+from collections import Counter
+from collections.abc import Callable
+
+import numpy as np
+
+from golden.datapath.image import Image
+from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region
+from sim.encode.program import Program
+
+
+class CircuitMachine:
+    """A circuit loaded with an image.
+
+    Parameters
+    ----------
+    circuit : sim.backends.rtl.Circuit or sim.backends.link.board.Board
+    verify : callable, optional
+        Called with all (address, word) pairs that were written, after loading.
+
+    Attributes
+    ----------
+    x, v, ratio, force, faults
+        As of `golden.datapath.machine.Machine`; a fault counts 1 for each sticky flag that was set.
+    cycles : int
+        Clock cycles of all steps so far, by the circuit's own counter.
+
+    Raises
+    ------
+    InputError
+        If the circuit is too small for the image.
+    """
+
+    def __init__(self, image: Image, circuit, verify: Callable | None = None):
+        self._program = Program(image, circuit.parameters)
+        self._map, self._formats = Map(circuit.parameters), image.formats
+        self.circuit = circuit
+        writes = [*self._program.load(), *self._program.start(image.v, image.x)]
+        circuit.write([(self._control(Control.FAULTS), (1 << len(circuit.faults)) - 1), *writes])
+        if verify:
+            verify(writes)
+        self.faults, self.cycles = Counter(), 0
+        self.fetch()
+        self.force = np.zeros_like(image.x)
+
+    def restart(self, v: np.ndarray):
+        """New velocities, and the image's loads and masses as they are now."""
+        self.circuit.write(self._program.start(v))
+        self.v = v
+
+    def take(self, image: Image):
+        """Go on with an image that differs in materials, natural lengths and ratios."""
+        self._program = Program(image, self.circuit.parameters)
+        self.circuit.write(self._program.materials())
+        self.ratio = image.ratio.copy()
+
+    def step(self, steps: int = 1):
+        self.circuit.write([(self._control(Control.RUN), steps)])
+        self.circuit.wait()
+        self.fetch()
+        cycles, faults = self.circuit.read([self._control(r) for r in (Control.CYCLES, Control.FAULTS)])
+        self.cycles += int(cycles)
+        self.faults |= Counter({name: 1 for bit, name in enumerate(self.circuit.faults) if int(faults) >> bit & 1})
+
+    def close(self):
+        self.circuit.close()
+
+    def _control(self, register):
+        return self._map.address(Region.CONTROL, 0, register)
+
+    def fetch(self):
+        """Read the object's state as the circuit has it now; refused while it runs."""
+        names = (*NODE_STATE, *NODE_FORCE)
+        addresses = [a for name in names for a in self._program.node_addresses(name)]
+        nodes = self._signed(self.circuit.read(addresses)).reshape(len(names), -1).T
+        self.x, self.v, self.force = (np.ascontiguousarray(nodes[:, k : k + 3]) for k in (0, 3, 6))
+        self.ratio = self._signed(self.circuit.read(self._program.edge_addresses("ratio")))
+
+    def _signed(self, words):
+        top = 1 << self._formats.state - 1
+        return (words.astype(np.int64) ^ top) - top

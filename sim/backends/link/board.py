@@ -1,0 +1,154 @@
+"""A circuit behind its link, with the face of the simulated one (`sim.backends.rtl.Circuit`)."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Iterable, Iterator
+from time import monotonic, sleep
+
+import numpy as np
+
+from hw.link.description import key
+from hw.link.identity import Identity
+from hw.link.protocol import BUSY, Operation, Status, item, items
+from hw.link.registers import LINK, Link
+from hw.machine.core import datapaths, faults
+from hw.map.memory_map import MAGIC, Control, Map, Region, join
+from sim.backends.link import segments
+from sim.backends.link.errors import CommandRefused, LinkError, OtherCircuit
+from sim.backends.link.line import SerialLine
+from sim.backends.link.session import TIMEOUT, Session
+
+BAUD = 1_000_000
+POLL = 1e-3
+"""s between two questions whether a run is over."""
+
+
+class Board:
+    """A circuit that is reached over a line.
+
+    Parameters
+    ----------
+    line
+        With ``url``, ``write(bytes)``, ``read(seconds)`` and ``close()``: `sim.backends.link.line.SerialLine`; see
+        `at`.
+    timeout : float
+        s; see `sim.backends.link.session.Session`.
+    clock : callable
+        s; a simulated line has a time of its own.
+
+    Attributes
+    ----------
+    parameters : Parameters
+        What the circuit says it is.
+    faults : list of str
+        Names of the bits of its sticky faults.
+    session : Session
+
+    Raises
+    ------
+    LineBroken, NoAnswer, OtherCircuit
+        See `sim.backends.link.errors`; the first two by every other method as well.
+    """
+
+    def __init__(self, line, timeout: float = TIMEOUT, clock: Callable[[], float] = monotonic):
+        self._line = line
+        try:
+            self.session = Session(line, lambda identity: _key(line.url, identity), timeout, clock=clock)
+            self.parameters = self.session.identity.parameters()
+            self.faults = faults(*datapaths(self.parameters))
+            self.halt()
+        except BaseException:
+            self._line.close()
+            raise
+
+    @classmethod
+    def at(cls, url: str, baud: int = BAUD, timeout: float = TIMEOUT) -> Board:
+        """The circuit at a port: any that pyserial opens, ``/dev/ttyUSB0``, ``socket://127.0.0.1:5000``."""
+        return cls(SerialLine(url, baud), timeout)
+
+    def close(self):
+        self._line.close()
+
+    def write(self, writes: Iterable[tuple[int, int]]):
+        """(address, data) pairs, in this order. Raises `CommandRefused` if one is refused."""
+        for _ in self._ask(segments.writes(list(writes))):
+            pass
+
+    def read(self, addresses: list[int]) -> np.ndarray:
+        """(n,) unsigned words. Raises `CommandRefused` if a read is refused."""
+        words = [word for payload in self._ask(segments.reads(addresses)) for word in payload]
+        return np.array(words, np.uint64)
+
+    def verify(self, writes: Iterable[tuple[int, int]]):
+        """Check by CRC that the circuit's memories hold what was written. Raises `LinkError` if they don't."""
+        memory = Map(self.parameters)
+        held = {address: data & memory.mask(address) for address, data in writes}
+        wanted = iter(held.values())
+        checks = list(segments.checks(list(held)))
+        answers = self._ask(payload for payload, _ in checks)
+        for (_, counts), found in zip(checks, answers, strict=True):
+            for count, crc in zip(counts, found, strict=True):
+                if zlib.crc32(b"".join(item(next(wanted)) for _ in range(count))) != crc:
+                    raise LinkError("the circuit must hold what it was sent, but the CRC of its memories differs")
+
+    def run(self, cycles: int = 0) -> bool:
+        """Whether a run goes on. Real circuits count their cycles themselves."""
+        (answer,) = self.session.commands([(Operation.ACCESS, b"")])
+        return bool(self._good(answer).status & BUSY)
+
+    def wait(self):
+        """Until the run is over."""
+        while self.run():
+            sleep(POLL)
+
+    def halt(self):
+        """End a run that an earlier host began."""
+        if self.run():
+            self.write([(self._control(Control.STOP), 1)])
+            self.wait()
+
+    def exchange(self, payloads: Iterable[bytes]) -> Iterator[list[int]]:
+        """What segments read, each payload between two steps of a run that goes on."""
+        return self._ask(payloads, Operation.EXCHANGE)
+
+    def counters(self) -> dict[str, int]:
+        """The link's registers, by name."""
+        words = self.read([join(LINK, 0, register, 0) for register in Link])
+        return {register.name.lower(): int(word) for register, word in zip(Link, words, strict=True)}
+
+    def watch(self, seconds: float):
+        """Let runs end when nothing is heard of the host for so long; 0: never."""
+        self.write([(join(LINK, 0, Link.WATCHDOG, 0), round(seconds * self.session.identity.clock_hz))])
+
+    def _ask(self, payloads, operation=Operation.ACCESS):
+        """Answers' items behind the faults."""
+        for answer in self.session.commands((operation, payload) for payload in payloads):
+            yield items(self._good(answer).payload)[1:]
+
+    def _good(self, answer):
+        status = Status(answer.status & ~BUSY)
+        if status == Status.STRANGER:
+            raise LinkError("the circuit must stay as it is while it is used, but it was reset: start again")
+        if status != Status.DONE:
+            raise CommandRefused(f"the circuit must do what it is told, but says: {status.name.lower()}")
+        return answer
+
+    def _control(self, register):
+        return join(Region.CONTROL, 0, register, 0)
+
+
+def _key(url: str, identity: Identity) -> bytes:
+    """The key of a circuit that is one of ours. Raises `OtherCircuit` if it isn't."""
+    try:
+        if identity.magic != MAGIC:
+            raise ValueError(f"magic must be {MAGIC:#x}, not {identity.magic:#x}")
+        own = key(identity.parameters())
+    except ValueError as error:
+        raise OtherCircuit(f"--port must lead to a circuit of this version, not what is at {url}: {error}") from None
+    if identity.key != own:
+        raise OtherCircuit(
+            f"--port must lead to a circuit with memory map {own.hex()}, as this version has, but the one at {url} has "
+            f"{identity.key.hex()}: build it anew (make bitstream), or use the version that it was built from"
+        )
+    return own

@@ -1,0 +1,58 @@
+"""Bytes over any port that pyserial can open."""
+
+from __future__ import annotations
+
+import serial
+
+from sim.backends.link.errors import LineBroken
+
+
+class SerialLine:
+    """A port: a device's name, or a URL such as ``socket://127.0.0.1:5000``.
+
+    Parameters
+    ----------
+    url : str
+    baud : int
+        Bits a second; a URL to a socket has none of its own.
+
+    Raises
+    ------
+    LineBroken
+        If it can't be opened; also by `write` and `read` when it is gone.
+    """
+
+    def __init__(self, url: str, baud: int):
+        self.url = url
+        try:
+            self._port = serial.serial_for_url(url, baudrate=baud, timeout=0, write_timeout=5)
+        except (serial.SerialException, ValueError, OSError) as error:
+            raise LineBroken(
+                f"--port must be a port that can be opened, not {url}: {_reason(error)} "
+                "(make doctor lists the ports of this machine)"
+            ) from None
+
+    def write(self, data: bytes) -> None:
+        self._checked(self._port.write, data)
+
+    def read(self, seconds: float) -> bytes:
+        """What has come, waiting for the first byte at most so long."""
+        self._port.timeout = seconds
+        first = self._checked(self._port.read, 1)
+        if not first:
+            return b""
+        self._port.timeout = 0
+        return first + self._checked(self._port.read, 4096)
+
+    def close(self) -> None:
+        self._port.close()
+
+    def _checked(self, call, argument):
+        try:
+            return call(argument)
+        except (serial.SerialException, OSError) as error:
+            raise LineBroken(f"--port must stay connected, but {self.url} is gone: {_reason(error)}") from None
+
+
+def _reason(error) -> str:
+    return str(getattr(error, "strerror", None) or error).strip().splitlines()[0]

@@ -1,0 +1,100 @@
+"""Hands on an object that is being simulated: positions and forces of some nodes, new velocities, between two steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from golden.support.errors import InputError
+from hw.link.frame import PAYLOAD_MOST, Frame
+from hw.link.protocol import ITEM_BYTES, ITEMS_MOST, Kind, head, item
+from hw.map.memory_map import NODE_FORCE, NODE_STATE, Map, Region
+from sim.backends.link.board import Board
+from sim.encode.encode import Loaded, raw_vectors
+from sim.encode.order import ranks
+
+AXES = 3
+READ_ITEMS = 2 * AXES
+"""Items of an answer for a node: its position and the force on it."""
+ASKED_BYTES = 2 * ITEM_BYTES
+MOVED_BYTES = (1 + AXES) * ITEM_BYTES
+"""Bytes of a payload for a node that is looked at, and for one whose velocity is given as well."""
+
+
+class Live:
+    """Some nodes of an object on a board, while it runs.
+
+    Parameters
+    ----------
+    board : Board
+        Loaded with ``loaded.image`` (`sim.backends.circuit.CircuitMachine`).
+    loaded : sim.encode.encode.Loaded
+    nodes : (n,) int
+        In the scene's order.
+
+    Raises
+    ------
+    InputError
+        If there are more nodes than fit one exchange: only what is read in one is of one step.
+    """
+
+    def __init__(self, board: Board, loaded: Loaded, nodes):
+        self._board, self._loaded, self._nodes = board, loaded, np.asarray(nodes)
+        self._places = ranks(loaded.node_order)[self._nodes]
+        self._map = Map(board.parameters)
+        most = most_nodes()
+        if not 1 <= len(self._nodes) <= most:
+            raise InputError(f"nodes must be 1 to {most}, which fit one exchange, not {len(self._nodes)}")
+
+    def exchange(self, velocity=None) -> tuple[np.ndarray, np.ndarray]:
+        """Look at the nodes, and give them new velocities, between two steps.
+
+        Parameters
+        ----------
+        velocity : (n, dim) m/s, optional
+            For nodes that are driven: taken up with the next step.
+
+        Returns
+        -------
+        x : (n, dim) m
+        force : (n, dim) N
+            Sum of all forces on the node, loads included: a driven or fixed node's device has to bear its negative.
+        """
+        (words,) = self._board.exchange([self.payload(velocity)])
+        top = 1 << self._board.parameters.formats.state - 1
+        raw = ((np.array(words) ^ top) - top).reshape(len(self._nodes), 2, AXES)
+        scene, units, fmt = self._loaded.scene, self._loaded.units, self._loaded.image.formats
+        x, force = (
+            np.ldexp(raw[:, n, : scene.dim].astype(float), -q.frac_bits)
+            for n, q in enumerate((fmt.position, fmt.accumulator))
+        )
+        return x * units.size + units.centre, force * units.force
+
+    def payload(self, velocity=None) -> bytes:
+        """Of the command."""
+        parts = []
+        if velocity is not None:
+            fmt, units = self._loaded.image.formats, self._loaded.units
+            raw = raw_vectors(np.asarray(velocity) / units.velocity, fmt.velocity)
+            mask = (1 << fmt.state) - 1
+            for place, words in zip(self._places, raw.tolist(), strict=True):
+                parts.append(head(Kind.WRITE, self._address(NODE_STATE[AXES], place), AXES, across=True))
+                parts += [item(word & mask) for word in words]
+        for place in self._places:
+            for word in (NODE_STATE[0], NODE_FORCE[0]):
+                parts.append(head(Kind.READ, self._address(word, place), AXES, across=True))
+        return b"".join(parts)
+
+    def _address(self, word, place):
+        return self._map.address(Region.NODE, word, int(place))
+
+
+def most_nodes() -> int:
+    """Nodes that fit one exchange."""
+    return min(PAYLOAD_MOST // (ASKED_BYTES + MOVED_BYTES), ITEMS_MOST // READ_ITEMS)
+
+
+def line_bytes(nodes: int, moved: bool = True) -> tuple[int, int]:
+    """Bytes on the line of an exchange about so many nodes: (to the circuit, from it)."""
+    asked = nodes * (ASKED_BYTES + moved * MOVED_BYTES)
+    given = (1 + nodes * READ_ITEMS) * ITEM_BYTES
+    return tuple(len(Frame(1, 1, payload=b"\1" * count).packed(b"")) for count in (asked, given))

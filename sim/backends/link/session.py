@@ -1,0 +1,145 @@
+"""Commands to a device and their answers, each done exactly once and in order, whatever the line loses."""
+
+from __future__ import annotations
+
+import secrets
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from time import monotonic
+
+from hw.link.frame import ANSWER, KEY_BYTES, Frame, FrameError, unpacked
+from hw.link.identity import Identity
+from hw.link.protocol import ITEM_BYTES, WINDOW, Operation, Status, item, items
+from sim.backends.link.errors import NoAnswer, OtherCircuit
+
+TIMEOUT = 2.0
+"""Seconds without a good answer after which what is under way is sent again."""
+ATTEMPTS = 6
+NO_KEY = bytes(KEY_BYTES)
+Command = tuple[Operation, bytes]
+
+
+class Session:
+    """Go-back-N with a window of `hw.link.protocol.WINDOW` commands.
+
+    Parameters
+    ----------
+    line
+        With ``write(bytes)`` and ``read(seconds)``: `sim.backends.link.line.SerialLine`.
+    key_of : callable
+        The key of the circuit that says who it is.
+    timeout : float
+        s.
+    attempts : int
+    clock : callable
+        s; a simulated line has a time of its own.
+
+    Attributes
+    ----------
+    identity : Identity
+    retries : int
+        Times that what was under way had to be sent again.
+    damaged : int
+        Frames that came and were none.
+
+    Raises
+    ------
+    NoAnswer
+        If so many tries in a row bring nothing; also by `commands`.
+    OtherCircuit
+        If who answers speaks another version.
+    """
+
+    def __init__(
+        self,
+        line,
+        key_of: Callable[[Identity], bytes],
+        timeout: float = TIMEOUT,
+        attempts: int = ATTEMPTS,
+        clock: Callable[[], float] = monotonic,
+    ):
+        self._line, self._timeout, self._attempts, self._clock = line, timeout, attempts, clock
+        self._key, self._buffer = NO_KEY, bytearray()
+        self.retries = self.damaged = 0
+        self.identity = self._greet()
+        self._key = key_of(self.identity)
+
+    def commands(self, wanted: Iterable[Command]) -> Iterator[Frame]:
+        """The answers, in order, as they come; the next commands are under way already."""
+        wanted, under_way = iter(wanted), deque()
+        more = True
+        while more or under_way:
+            fresh = []
+            while more and len(under_way) + len(fresh) < WINDOW:
+                command = next(wanted, None)
+                more = command is not None
+                if more:
+                    fresh.append(self._frame(*command))
+            under_way += fresh
+            self._send(fresh)
+            if under_way:
+                yield self._answered(under_way)
+
+    def _answered(self, under_way) -> Frame:
+        """The answer to the first of what is under way."""
+        for _ in range(self._attempts):
+            until = self._clock() + self._timeout
+            while (left := until - self._clock()) > 0:
+                frame = self._frame_from_line(left)
+                if frame and frame.seq == under_way[0].seq and frame.type == under_way[0].type | ANSWER:
+                    under_way.popleft()
+                    return frame
+            self.retries += 1
+            self._send(under_way)
+        raise NoAnswer(
+            f"--port must lead to a circuit that answers, but {getattr(self._line, 'url', 'it')} was silent "
+            f"for {self._attempts * self._timeout:.3g} s ({self.damaged} damaged frames came): it must be "
+            "loaded (make flash) and have the rate of --baud"
+        )
+
+    def _greet(self) -> Identity:
+        """Begin a session: whatever was before it is over, on the line too."""
+        nonce = secrets.randbits(8 * ITEM_BYTES)
+        self._seq = secrets.randbits(8)
+        greeting = self._frame(Operation.HELLO, item(nonce))
+        self._line.write(b"\0")
+        self._send([greeting])
+        under_way = deque([greeting])
+        while True:
+            answer = self._answered(under_way)
+            told = items(answer.payload)
+            if len(told) > 1 and told[1] == nonce and answer.status & 0xF == Status.DONE:
+                break
+            under_way.append(greeting)  # an answer to somebody else's greeting
+        try:
+            return Identity.read(told[2:])
+        except ValueError as error:
+            raise OtherCircuit(
+                f"--port must lead to a circuit of this version, but its identity has another form: {error}"
+            ) from None
+
+    def _frame(self, operation: Operation, payload: bytes) -> Frame:
+        frame = Frame(operation, self._seq, payload=payload)
+        self._seq = (self._seq + 1) % 256
+        return frame
+
+    def _send(self, frames) -> None:
+        if frames:
+            self._line.write(b"".join(frame.packed(self._key) for frame in frames))
+
+    def _frame_from_line(self, seconds: float) -> Frame | None:
+        """The next good frame, if one comes in time."""
+        until = self._clock() + seconds
+        while True:
+            while (end := self._buffer.find(0)) >= 0:
+                coded = bytes(self._buffer[:end])
+                del self._buffer[: end + 1]
+                if coded:
+                    try:
+                        return unpacked(coded, self._key)
+                    except FrameError:
+                        self.damaged += 1
+            left = until - self._clock()
+            if left <= 0:
+                return None
+            self._buffer += self._line.read(left)

@@ -1,0 +1,63 @@
+"""Whether a scene's numbers have a place in the circuit's: refused by name before anything runs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from golden.datapath import records
+from golden.datapath.formats import Formats
+from golden.physics.scene import Scene
+from golden.support.errors import InputError
+from sim.encode import encode as image
+from sim.encode.encode import Loaded
+from sim.encode.switch import prepared
+
+
+def load(scene: Scene, edge_order: np.ndarray | None = None) -> Loaded:
+    """`sim.encode.encode.load`, and every phase's numbers tried out. Raises `InputError` naming what doesn't fit."""
+    _check_speed(scene)
+    try:
+        loaded = image.load(scene, edge_order=edge_order)
+        for phase in scene.phases[::-1]:  # the first one last: it stays
+            loaded.start(phase, loaded.image.v)
+            _check_masses(loaded)
+    except InputError:
+        raise
+    except (ValueError, OverflowError) as error:
+        raise InputError(f"the scene must have numbers that the circuit can hold: {error}") from None
+    for held in (loaded, *later(loaded)):
+        record = records.material(held.image.formats, len(held.image.damper["rho_value"]))
+        for material, fields in zip(held.scene.materials, held.image.materials, strict=True):
+            _check(record, fields, f"materials.{material.name} must have coefficients")
+    return loaded
+
+
+def later(loaded: Loaded) -> list[Loaded]:
+    """The object with the materials that each phase brings, as it would be at its start."""
+    return [prepared(loaded, materials) for materials in loaded.scene.material_sets[1:]]
+
+
+def _check_speed(scene: Scene) -> None:
+    """A node must not go further in a step than the displacement format reaches, whatever the velocity's unit."""
+    limit = 2.0 ** (Formats().displacement.int_bits - 1) * scene.size / scene.dt
+    for n, phase in enumerate(scene.phases):
+        fastest = np.abs(phase.velocity[phase.driven]).max(initial=0)
+        if fastest >= limit:
+            raise InputError(
+                f"phases[{n}].driven must have velocities below {limit:.3g} m/s, not {fastest:.3g}: "
+                "the circuit moves a node by less than a quarter of the object's size in a step"
+            )
+
+
+def _check_masses(loaded: Loaded) -> None:
+    record = records.inverse_mass(loaded.image.formats)
+    for n, node in enumerate(loaded.node_order):
+        fields = {name: values[n] for name, values in loaded.image.inverse_mass.items()}
+        _check(record, fields, f"mass must give node {node} a factor")
+
+
+def _check(record, fields, what: str) -> None:
+    try:
+        records.pack(record, fields)
+    except ValueError as error:
+        raise InputError(f"{what} that the circuit can hold, beside the scene's other forces: {error}") from None

@@ -1,0 +1,94 @@
+"""The cycles of a run, exactly as the circuit counts them, from the lists alone: nothing has to be built.
+
+An event is a cycle counted from the first of the run. Rows of edges and rows of nodes go in the order of their lists,
+one a cycle (nodes one in three, if their axes come one after the other), so that each of them is at its place in the
+list plus the longest delay of those before it.
+"""
+
+import numpy as np
+
+from golden.datapath.image import Image
+from golden.datapath.rk4 import RK4
+from golden.physics.scene import Scene
+from golden.support.errors import InputError
+from hw.machine.issue_register import LATENCY as FRONT_LATENCY
+from hw.machine.latency import Latencies
+from hw.parameters import Parameters
+from sim.encode import limits
+from sim.encode.program import Program
+
+UNTIL_SETTLED = 50
+"""Steps after which every list that ends well has found its rhythm."""
+
+
+class Wavefront:
+    """An object in a circuit: when its rows and nodes go.
+
+    Raises
+    ------
+    golden.support.errors.InputError
+        If the circuit is too small for the object (`sim.encode.program.Program`).
+    """
+
+    def __init__(self, image: Image, parameters: Parameters, latencies: Latencies | None = None):
+        program = Program(image, parameters)
+        self.latencies = latencies or Latencies.of(parameters)
+        self.rows, self.edges, self._lanes = program.rows, len(image.edges), parameters.lanes
+        self._turns = parameters.turns
+        self._highest, self._need = program.highest(), program.need()
+        self._need[-1] = self.rows  # the last nodes close the stage
+
+    def run(self, steps: int) -> np.ndarray:
+        """(steps,) the first cycle after each step of a run; the last is what the circuit's counter says."""
+        updated = np.full(len(self._need), 0)
+        last_row, last_node = self.latencies.rows - 1, self.latencies.nodes - self._turns
+        ends = []
+        for stage in range(steps * RK4.stages):
+            rows = in_turn(updated[self._highest] if stage else np.zeros(self.rows, np.int64), last_row + 1)
+            summed = np.concatenate([[0], rows + self.latencies.edge])
+            nodes = in_turn(summed[self._need], last_node + self._turns, self._turns)
+            updated = nodes + self.latencies.node
+            last_row, last_node = rows[-1], nodes[-1]
+            ends += [updated[-1] - FRONT_LATENCY] if stage % RK4.stages == RK4.stages - 1 else []
+        return np.array(ends)
+
+    def per_step(self) -> int:
+        """Cycles of a step once running: a run of n + 1 steps takes so many more than one of n.
+
+        Raises
+        ------
+        ValueError
+            If steps take turns in being short and long.
+        """
+        lengths = np.diff(self.run(UNTIL_SETTLED))[UNTIL_SETTLED // 2 :]
+        if (lengths != lengths[0]).any():
+            raise ValueError(f"steps must take the same number of cycles, not {sorted(set(lengths.tolist()))}")
+        return int(lengths[0])
+
+    def occupancy(self) -> float:
+        """Edges issued per lane and cycle, once running."""
+        return RK4.stages * self.edges / (self._lanes * self.per_step())
+
+
+def in_turn(ready: np.ndarray, first: int, pace: int = 1) -> np.ndarray:
+    """When entries of a list go that are ready at these times, one in ``pace`` cycles, the first not before
+    ``first``."""
+    turns = pace * np.arange(len(ready))
+    return turns + np.maximum.accumulate(np.maximum(ready - turns, first))
+
+
+def cycles_per_step(scene: Scene, lanes: int, updates: int) -> int:
+    """Cycles of a step of a scene's object, once running, in a circuit that has room for it.
+
+    Raises
+    ------
+    InputError
+        If there is no such circuit, or it could not hold the scene at any capacity.
+    """
+    image = limits.load(scene).image
+    room = {"nodes": max(2, image.nodes), "edges": len(image.edges), "materials": len(image.materials)}
+    try:
+        parameters = Parameters(lanes=lanes, updates=updates, **room)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return Wavefront(image, parameters).per_step()

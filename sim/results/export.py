@@ -1,0 +1,60 @@
+"""A run as a time series that ParaView opens: a VTU file for each frame and a collection of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from golden.mesh import files as meshfile
+from golden.physics.scene import Scene
+from golden.physics.trajectory import Trajectory
+from golden.support.files import replaced
+from sim.results.energy import edge_forces
+
+COLLECTION = "run.pvd"
+
+
+def vtu(scene: Scene, trajectory: Trajectory, folder: Path, shown: Callable[[Iterable], Iterable] = iter) -> list[Path]:
+    """Write ``frame-0000.vtu`` and so on, then ``run.pvd``, which names them with their times (s); gives all of them.
+
+    Points are the nodes in m, with the scene's displacement (m), velocity (m/s) and reaction (N). Cells are the edges
+    and then the elements, with ratio a and force (N, above 0 where it pushes the ends apart), which float64 computes
+    from the frame's state; an element has the mean of its edges. ``shown`` may look at the numbers of the frames.
+    """
+    collection = folder / COLLECTION
+    collection.unlink(missing_ok=True)
+    mesh, forces = scene.mesh, edge_forces(scene, trajectory)
+    of_cells = mesh.cell_edges()
+    digits = max(4, len(str(len(trajectory.t) - 1)))
+    paths = []
+    for n in shown(range(len(trajectory.t))):
+        x, v, a, reaction = (getattr(trajectory, name)[n] for name in ("x", "v", "a", "reaction"))
+        force = forces[n]
+        paths.append(folder / f"frame-{n:0{digits}}.vtu")
+        meshfile.write(
+            paths[-1],
+            x,
+            [mesh.edges, mesh.cells],
+            {"displacement": in_space(x - trajectory.x[0]), "velocity": in_space(v), "reaction": in_space(reaction)},
+            {"ratio": [a, a[of_cells].mean(axis=1)], "force": [force, force[of_cells].mean(axis=1)]},
+        )
+    _write_collection(collection, trajectory.t, paths)
+    return [*paths, collection]
+
+
+def in_space(vectors: np.ndarray) -> np.ndarray:
+    """(N, 3) of vectors (N, 2 or 3): ParaView takes two components for no vector."""
+    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
+
+
+def _write_collection(path: Path, times: np.ndarray, paths: list[Path]) -> None:
+    root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
+    frames = ElementTree.SubElement(root, "Collection")
+    for time, frame in zip(times.tolist(), paths, strict=True):
+        ElementTree.SubElement(frames, "DataSet", timestep=repr(time), file=frame.name)
+    ElementTree.indent(root)
+    with replaced(path) as file:
+        ElementTree.ElementTree(root).write(file, encoding="utf-8", xml_declaration=True)

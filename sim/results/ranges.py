@@ -1,0 +1,168 @@
+"""How much of its format each quantity of the datapath uses in a run, and how much is left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import log2
+
+import numpy as np
+
+from golden.datapath.machine import Machine
+from golden.physics.scene import Scene
+from sim.encode import limits
+from sim.encode.switch import switch
+from sim.encode.units import Units
+from sim.run import Raw
+
+SAMPLES = 100
+"""Steps of a run that are looked at, unless it has fewer frames or more phases."""
+
+QUANTITIES = {
+    "d": "edge vector",
+    "square": "squared length",
+    "inverse": "1 / length",
+    "u": "direction of the edge",
+    "w": "relative velocity",
+    "rate": "rate of the length",
+    "share": "ratio, as an operand",
+    "relaxed": "length of the Voigt part",
+    "stretch": "stretch of the spring",
+    "spring": "spring's trial force",
+    "dashpot": "damper's trial force",
+    "g": "size of the trial force",
+    "rho": "rho",
+    "sigma": "sigma",
+    "trials": "trial force along the axes",
+    "pull": "force on a node",
+    "s": "sigma g",
+    "creep": "creep rate",
+    "extension": "extension rate",
+    "net": "difference of the two rates",
+    "weighted": "1 / length, weighted",
+    "slope": "slope of the ratio",
+    "total_next": "sum of the ratio's slopes",
+    "ratio_next": "ratio",
+    "force": "sum of forces on a node",
+    "mantissa": "sum of forces, as an operand",
+    "factor": "1 / mass, weighted",
+    "acceleration": "velocity gained in a step",
+    "v_total": "sum of the velocity's slopes",
+    "v": "velocity",
+    "displacement": "way in a step",
+    "x_total": "sum of the ways",
+    "x": "position",
+}
+"""The variables of `golden.datapath.edge` and `golden.datapath.node` that hold bits for long or multiply, in their
+order, in words."""
+
+NORMALISED = {
+    "d",
+    "square",
+    "inverse",
+    "w",
+    "rate",
+    "stretch",
+    "g",
+    "rho",
+    "sigma",
+    "s",
+    "net",
+    "weighted",
+    "mantissa",
+    "factor",
+}
+"""Those that travel with an exponent: shifted so that they fill their bits, which leaves them no headroom to have."""
+
+
+class Ranges:
+    """A histogram, for each quantity, of how many bits its numbers take: something to `watch` a `Machine` with.
+
+    Attributes
+    ----------
+    counts : dict of str to (bits + 1,) int64
+        How many numbers took 0, 1, 2 ... bits, sign excluded: what takes n is from 2**(n - 1) up to 2**n.
+    largest : dict of str to int
+        Largest magnitude, as an integer.
+    formats : dict of str to Q
+    """
+
+    def __init__(self):
+        self.counts, self.largest, self.formats = {}, {}, {}
+
+    def __call__(self, values: dict) -> None:
+        for name in QUANTITIES.keys() & values.keys():
+            vector = values[name] if isinstance(values[name], list) else [values[name]]
+            magnitude = np.abs(np.concatenate([np.atleast_1d(number.raw) for number in vector]))
+            q = self.formats.setdefault(name, vector[0].fmt)
+            bits = np.bincount(np.frexp(magnitude.astype(float))[1], minlength=q.width + 1)
+            self.counts[name] = self.counts.get(name, 0) + bits
+            self.largest[name] = max(self.largest.get(name, 0), int(magnitude.max()))
+
+    def entries(self, units: Units) -> list[dict]:
+        """Plain numbers for the JSON, a quantity each, in their order."""
+        return [self._entry(name, units) for name in QUANTITIES if name in self.counts]
+
+    def _entry(self, name: str, units: Units) -> dict:
+        q, largest, normalised = self.formats[name], self.largest[name], name in NORMALISED
+        full = 1 << q.width - q.signed
+        one, unit = (1.0, "") if normalised else in_si(q.unit, units)
+        return {
+            "quantity": name,
+            "words": QUANTITIES[name],
+            "format": str(q),
+            "bits": q.width,
+            "signed": q.signed,
+            "normalised": normalised,
+            "largest": None if normalised else largest * q.lsb * one,
+            "unit": unit,
+            "headroom_bits": round(log2(full / largest), 3) if largest else None,
+            "counts": self.counts[name].tolist(),
+        }
+
+
+def in_si(unit: str, units: Units) -> tuple[float, str]:
+    """A format's unit in SI. The trial forces of several materials have no common one: then it is the full scale."""
+    trial = (units.trial[0], "N") if len(set(units.trial)) == 1 else (1.0, "full scale")
+    return {
+        "size": (units.size, "m"),
+        "size/step": (units.size, "m"),
+        "velocity full scale": (units.velocity, "m/s"),
+        "force full scale": (units.force, "N"),
+        "trial full scale": trial,
+        "1": (1.0, ""),
+    }[unit]
+
+
+def sampled(scene: Scene) -> np.ndarray:
+    """Frames from which a step is looked at: evenly spread, and those at which a phase starts."""
+    frames = np.linspace(0, len(scene.frames) - 2, min(SAMPLES, len(scene.frames) - 1)).round().astype(int)
+    starts = np.cumsum([0] + [phase.steps for phase in scene.phases[:-1]])
+    return np.union1d(frames, np.searchsorted(scene.frames, starts))
+
+
+def of_run(scene: Scene, raw: Raw, progress: Callable[[int], object] | None = None) -> list[dict]:
+    """The ranges in one step behind each frame of `sampled`, from the state that a run had there: a quantity each,
+    with plain numbers.
+
+    ``progress`` is called with the step that was reached.
+    """
+    ranges, loaded, begun = Ranges(), limits.load(scene), None
+    machine = Machine(loaded.image, ranges)
+    for frame, phase in _with_phase(scene):
+        machine.x, machine.v = raw.x[frame][loaded.node_order], raw.v[frame][loaded.node_order]
+        machine.ratio = raw.ratio[frame][loaded.edge_order]
+        if phase is not begun and phase.materials:
+            loaded = switch(loaded, machine, phase.materials)
+        begun = phase
+        machine.restart(loaded.start(phase, machine.v))
+        machine.step()
+        if progress:
+            progress(int(scene.frames[frame]) + 1)
+    return ranges.entries(loaded.units)
+
+
+def _with_phase(scene: Scene) -> Iterator[tuple]:
+    """(frame, the phase that goes on or starts there)"""
+    ends = np.cumsum([phase.steps for phase in scene.phases])
+    for frame in sampled(scene):
+        yield frame, scene.phases[np.searchsorted(ends, scene.frames[frame], side="right")]

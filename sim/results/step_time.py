@@ -1,0 +1,59 @@
+"""How long a circuit takes for a step of a scene: counted in its run, and on the boards whose clock is known."""
+
+from __future__ import annotations
+
+from golden.datapath.rk4 import RK4
+from golden.physics.scene import Scene
+from golden.support.errors import InputError
+from sim.encode import limits
+from sim.run import Result
+
+
+def of_run(scene: Scene, result: Result) -> dict:
+    """``cycles_per_step`` and ``occupancy`` (edges issued per lane and cycle) of a circuit's run; None of others."""
+    if result.cycles is None:
+        return {"cycles_per_step": None, "occupancy": None}
+    issued = RK4.stages * len(scene.mesh.edges) * scene.steps
+    return {"cycles_per_step": result.cycles / scene.steps, "occupancy": issued / (result.lanes * result.cycles)}
+
+
+def on_boards(scene: Scene, folder=None) -> list[dict]:
+    """What a step would take on each board whose device the tools time.
+
+    ``timed`` says whether there is a timing result of the board, ``fits`` whether its circuit holds the scene; with
+    both the cycles of a step are those of the cycle model (`sim.results.cycles`), and ``step_us`` and ``real_time``
+    (simulated time / time) follow; ``lanes``, ``updates``, ``axes`` and ``clock_mhz`` say of which circuit.
+    """
+    from hw.boards import board as boards
+    from hw.boards.timing import result as timing  # Amaranth is slow to load
+
+    found = []
+    for name in boards.timed():
+        path = (folder or timing.KEPT) / f"{name}.json"
+        of_board = {"board": name, "timed": path.exists()}
+        found.append(of_board | (_timed(scene, timing.read(path, timing.Result)) if path.exists() else {}))
+    return found
+
+
+def clock(board: str, folder=None) -> float:
+    """MHz: that of a board's timing result. Raises `InputError` if there is none."""
+    from hw.boards.timing import result as timing
+
+    path = (folder or timing.KEPT) / f"{board}.json"
+    if not path.exists():
+        raise InputError(f"--clock must be given, as {board} has not been timed (make timing BOARD={board})")
+    return timing.read(path, timing.Result).clock_mhz
+
+
+def _timed(scene: Scene, timing) -> dict:
+    from hw.parameters import Parameters
+    from sim.results.cycles import Wavefront
+
+    parameters = Parameters(**{name: getattr(timing, name) for name in Parameters.SIZES})
+    sizes = {name: getattr(parameters, name) for name in ("lanes", "updates", "axes")} | {"clock_mhz": timing.clock_mhz}
+    try:
+        cycles = Wavefront(limits.load(scene).image, parameters).per_step()
+    except InputError:  # too small for it
+        return sizes | {"fits": False}
+    step_us = cycles / timing.clock_mhz
+    return sizes | {"fits": True, "cycles_per_step": cycles, "step_us": step_us, "real_time": scene.dt * 1e6 / step_us}

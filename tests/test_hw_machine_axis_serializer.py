@@ -1,0 +1,28 @@
+"""A node's axes have their turns, one after the other, with all that came with it."""
+
+from hw_objects import simulate
+
+from golden.numbers.graph import AXES
+from hw.machine.axis_serializer import Turns
+
+WIDTH = 7
+
+
+def test_every_axis_of_every_node_has_its_turn(rng):
+    dut, expected, seen = Turns(width=WIDTH), [], []
+
+    async def bench(ctx):
+        for _ in range(50):
+            node = int(rng.integers(1 << WIDTH))
+            for cycle in range(len(AXES) + int(rng.integers(0, 4))):
+                ctx.set(dut.valid, cycle == 0)
+                ctx.set(dut.i, node if cycle == 0 else int(rng.integers(1 << WIDTH)))
+                await ctx.tick()
+                axis = cycle if cycle < len(AXES) else None
+                expected.append(None if axis is None else (node, axis, axis == 0, axis == len(AXES) - 1))
+                ports = dut.o, dut.axis, dut.first, dut.last
+                seen.append(tuple(map(ctx.get, ports)) if ctx.get(dut.turn_valid) else None)
+                assert ctx.get(dut.turn_valid) or not (ctx.get(dut.first) or ctx.get(dut.last))
+
+    simulate(dut, bench)
+    assert seen == expected and None in seen

@@ -1,0 +1,32 @@
+"""The memory of a list: what the host writes is what the fetch and the host read, each so many cycles later."""
+
+from hw_objects import simulate
+
+from hw.machine.entry_memory import LATENCY, List
+
+
+def test_what_is_written_is_read_by_both(rng):
+    dut, words = List(width=12, depth=20), [int(w) for w in rng.integers(0, 1 << 12, 20)]
+
+    async def bench(ctx):
+        for place, word in enumerate(words):
+            ctx.set(dut.write, 1)
+            ctx.set(dut.write_address, place)
+            ctx.set(dut.write_data, word)
+            await ctx.tick()
+        ctx.set(dut.write, 0)
+        for host in (0, 1):
+            ctx.set(dut.host, host)
+            asked = [int(place) for place in rng.integers(0, 20, 100)]
+            for cycle in range(len(asked) + LATENCY):
+                if cycle < len(asked):
+                    mine, other = (dut.host_address, dut.fetch_address)[:: 1 if host else -1]
+                    ctx.set(mine, asked[cycle])
+                    ctx.set(other, int(rng.integers(20)))
+                await ctx.tick()
+                if cycle >= LATENCY - 1 and cycle - LATENCY + 1 < len(asked):
+                    assert ctx.get(dut.entry) == words[asked[cycle - LATENCY + 1]]
+                if cycle >= LATENCY - 2 and cycle - LATENCY + 2 < len(asked):
+                    assert ctx.get(dut.data) == words[asked[cycle - LATENCY + 2]]
+
+    simulate(dut, bench)

@@ -1,0 +1,71 @@
+"""Resets anywhere: in a frame that comes, in an answer that goes out, in a run. The next session's commands work."""
+
+import itertools
+from math import inf
+
+import pytest
+from served import CLOCK_HZ, SMALL, NoisyLine, serial_circuit
+
+from hw.map.memory_map import Control, Map, Region
+from sim.backends.link.board import Board
+
+TIMEOUT = 2e-3
+"""s of the circuit's time: more than a window of these commands and their answers takes."""
+WITHIN = 60_000
+"""Cycles in one of which the reset comes: commands and answers go to and fro for as long."""
+
+
+class Reset(Exception):
+    pass
+
+
+class Line(NoisyLine):
+    """Resets the circuit in the cycle ``at``, whatever is on the line, and says so."""
+
+    at = inf
+
+    def read(self, seconds):
+        left = self.at - self._circuit.clock
+        if left > self.SLICE:
+            return super().read(min(seconds, (left - self.SLICE) / CLOCK_HZ))
+        data, self._waiting, self.at = self._waiting, b"", inf
+        self._circuit.run(data, left)
+        self._circuit.reset()
+        raise Reset
+
+
+def resets(rng, count) -> int:
+    """After how many of so many resets the next commands didn't do what they should. Every third is in a run."""
+    circuit, failed = serial_circuit(), 0
+    line, memory = Line(circuit, rng, 0), Map(SMALL)
+    places = [memory.address(Region.NODE, name, place) for name in ("x_x", "v_y") for place in range(SMALL.nodes)]
+    control = {register: memory.address(Region.CONTROL, 0, register) for register in Control}
+    run = [(control[Control.ROW_COUNT], 4), (control[Control.NODE_COUNT], 4), (control[Control.RUN], 1_000_000)]
+    for number in range(count):
+        board = Board(line, TIMEOUT, line.clock)
+        words = [int(word) for word in rng.integers(0, 1 << 36, len(places))]
+        board.write(zip(places, words, strict=True))
+        failed += board.read(places).tolist() != words
+        line.at = circuit.clock + int(rng.integers(1, WITHIN))
+        with pytest.raises(Reset):
+            board.write(run * (number % 3 == 0))
+            for access in itertools.count():
+                if number % 3 == 0:
+                    board.read(list(control.values()))
+                elif access % 2:
+                    board.write([(place, access) for place in places])
+                else:
+                    board.read(places)
+    circuit.close()
+    return failed
+
+
+def test_after_a_reset_anywhere_the_next_commands_work(rng):
+    assert resets(rng, 12) == 0
+
+
+@pytest.mark.campaign
+def test_after_500_resets_anywhere_the_next_commands_work(rng, figure):
+    failed = resets(rng, 500)
+    figure("resets anywhere in a frame, an answer or a run after which the next commands don't work, of 500", 0, failed)
+    assert failed == 0

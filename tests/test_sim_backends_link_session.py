@@ -1,0 +1,105 @@
+"""Commands over a line that loses and damages bytes: each is done exactly once, in order."""
+
+import pytest
+from served import SMALL, NoisyLine, serial_circuit
+
+from hw.link.description import key
+from hw.link.protocol import Kind, Operation, Status, head, item, items
+from hw.map.memory_map import MAGIC, Control, Map, Region
+from sim.backends.link.errors import NoAnswer
+from sim.backends.link.session import Session
+
+RATES = 1e-4, 1e-3, 1e-2, 5e-2
+TIMEOUT = 20_000 / 24e6  # s: a window of short commands and their answers
+
+
+def control(register):
+    return Map(SMALL).address(Region.CONTROL, 0, register)
+
+
+# One refused write counts one, whoever did it; then the count is read
+COUNTING = head(Kind.WRITE, control(Control.MAGIC), 1) + item(0) + head(Kind.READ, control(Control.REFUSED), 1)
+
+
+def counted(rng, share, commands):
+    """(what each of so many commands counted, retries, damaged bytes)"""
+    circuit = serial_circuit()
+    line = NoisyLine(circuit, rng, share)
+    session = Session(line, lambda identity: key(SMALL), TIMEOUT, attempts=1000, clock=line.clock)
+    answers = list(session.commands([(Operation.ACCESS, COUNTING)] * commands))
+    circuit.close()
+    assert all(answer.status == Status.REFUSED for answer in answers)
+    return [items(answer.payload)[1] for answer in answers], session.retries, line.damaged
+
+
+@pytest.mark.parametrize("share", RATES)
+def test_every_command_is_done_exactly_once_and_in_order(share, rng):
+    commands = 30 if share > 1e-2 else 300
+    counts, retries, damaged = counted(rng, share, commands)
+    assert counts == list(range(1, commands + 1))
+    assert bool(retries) <= bool(damaged) and (share < 1e-3 or damaged)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("share", RATES)
+def test_no_command_of_5000_is_lost_or_doubled(share, rng, figure):
+    counts, retries, damaged = counted(rng, share, 5000)
+    print(f"byte error rate {share:g}: {damaged} bytes damaged, {retries} times sent again")
+    wrong = sum(count != number for number, count in enumerate(counts, 1))
+    figure(f"commands lost or doubled, of 5,000 at a byte error rate of {share:g}", 0, wrong)
+    assert counts == list(range(1, 5001)) and damaged
+
+
+@pytest.mark.parametrize("error", [-0.02, 0.02])
+def test_a_host_whose_rate_is_two_per_cent_off_is_understood(error, rng):
+    circuit = serial_circuit(host_error=error)
+    line = NoisyLine(circuit, rng, 0)
+    session = Session(line, lambda identity: key(SMALL), 10 * TIMEOUT, clock=line.clock)
+    words = [int(w) for w in rng.integers(0, 1 << 36, 90)]
+    x = Map(SMALL).address(Region.NODE, "x_x", 0)
+    payload = head(Kind.WRITE, x, 30) + b"".join(map(item, words[:30])) + head(Kind.READ, x, 30)
+    answers = list(session.commands([(Operation.ACCESS, payload)] * 5))
+    circuit.close()
+    assert [items(answer.payload)[1:] for answer in answers] == [words[:30]] * 5 and not session.retries
+
+
+@pytest.mark.parametrize("error", [-0.5, 1.0])
+def test_a_host_with_another_rate_gets_no_answer(error, rng):
+    circuit = serial_circuit(host_error=error)
+    line = NoisyLine(circuit, rng, 0)
+    with pytest.raises(NoAnswer, match="have the rate of --baud"):
+        Session(line, lambda identity: key(SMALL), TIMEOUT, clock=line.clock)
+    circuit.close()
+
+
+def test_a_silent_line_is_given_up(rng):
+    class Dead:
+        url = "nowhere"
+
+        def write(self, data):
+            pass
+
+        def read(self, seconds):
+            return b""
+
+    with pytest.raises(
+        NoAnswer,
+        match=r"--port must lead to a circuit that answers, but nowhere was silent for 0.06 s "
+        r"\(0 damaged frames came\): it must be loaded \(make flash\) and have the rate "
+        "of --baud",
+    ):
+        Session(Dead(), lambda identity: key(SMALL), timeout=0.01)
+
+
+def test_a_new_session_begins_where_an_old_one_was_broken_off(rng):
+    """In the middle of a frame, with answers still under way."""
+    circuit = serial_circuit()
+    line = NoisyLine(circuit, rng, 0)
+    for _ in range(10):
+        session = Session(line, lambda identity: key(SMALL), TIMEOUT, clock=line.clock)
+        assert session.identity.magic == MAGIC and session.identity.parameters() == SMALL
+        answers = session.commands([(Operation.ACCESS, COUNTING)] * 20)
+        for _ in range(int(rng.integers(1, 5))):
+            next(answers)
+        circuit.run(COUNTING[: int(rng.integers(len(COUNTING)))], int(rng.integers(2000)))
+    circuit.close()
