@@ -12,6 +12,7 @@ from golden.support.paths import ROOT
 from hw.boards import doctor, flash
 from hw.boards.bitstream import command as bitstream
 from hw.boards.timing import command as timing
+from hw.docs import command as docs
 from hw.families import FAMILIES
 from hw.parameters import Parameters
 
@@ -65,8 +66,7 @@ def parser() -> Parser:
     bitstream.add_options(commands.add_parser("bitstream", help="what is loaded into a board"), whole)
     flash.add_options(commands.add_parser("flash", help="load it"))
     doctor.add_options(commands.add_parser("doctor", help="what is there, what is missing, what to do about it"))
-    docs_command = commands.add_parser("docs", help="bring the README's tables up to date")
-    docs_command.set_defaults(run=docs)
+    docs.add_options(commands.add_parser("docs", help="bring the documents' tables and pictures up to date"))
     return main
 
 
@@ -116,17 +116,6 @@ def map_(args) -> int:
     chosen, folder = parameters(args), Path(args.out)
     pages.write(chosen, folder)
     print(f"{folder}: map of {build.describe(chosen)}")
-    return 0
-
-
-def docs(args) -> int:
-    from hw.docs import updated
-
-    path = ROOT / "README.md"
-    text = path.read_text(encoding="utf-8")
-    if (new := updated(text)) != text:
-        path.write_text(new, encoding="utf-8")
-    print(f"{path.name}: {'up to date' if new == text else 'tables written anew'}")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""The blocks of the project's documents: files to write, commands to run, what they print."""
+"""The project's pages and their blocks: files to write, commands to run, and what they print."""
 
 import re
 import shlex
@@ -9,15 +9,18 @@ import pytest
 
 from environment import ROOT
 from golden import __main__ as golden
+from hw import __main__ as hw
 from sim import __main__ as sim
 
-COMMANDS = {"golden": golden.main, "sim": sim.main}
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+COMMANDS = {"golden": golden.main, "hw": hw.main, "sim": sim.main}
+PARSERS = {"golden": golden.parser, "hw": hw.parser, "sim": sim.parser}
 NUMBER = r"\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: ``language`` and, behind it, the ``name`` of the file that it is."""
+    """A fenced block: its ``language`` and, after it, the ``name`` of the file that it shows."""
 
     language: str
     name: str
@@ -25,21 +28,28 @@ class Block:
 
 
 def blocks(text: str) -> list[Block]:
-    """All blocks of a Markdown text."""
+    """Return all blocks of a Markdown text."""
     fenced = re.findall(r"^```(\w*)(?: (\S+))?\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
     return [Block(*block) for block in fenced]
 
 
+def commands(path) -> list[str]:
+    """Return the commands in a page's ``sh`` blocks that are our own, from the package's name on."""
+    shell = "".join(block.text for block in blocks(path.read_text()) if block.language == "sh")
+    return re.findall(r"^\.venv/bin/python -m (.*)$", shell, re.MULTILINE)
+
+
 def targets() -> set[str]:
-    """What `make` can be asked for."""
+    """Return the targets of the Makefile."""
     return set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
 
 
 class Reader:
-    """Somebody who does what a document says, in the current folder, and looks at what is printed.
+    """Somebody who does what a document says, in the current folder, and compares what is printed.
 
-    Files are written, commands run, Python is entered into one session. ``text`` behind either is what it prints:
-    the same words, and numbers within a fifth, but for seconds; "error: " means an exit code that isn't 0.
+    Files are written, commands run, Python is entered into one session. A ``text`` block after either is what it
+    prints: the same words, and numbers within a fifth, seconds excepted. A text that begins with "error: " stands for
+    an exit code other than 0.
     """
 
     def __init__(self, capsys):
@@ -63,7 +73,7 @@ class Reader:
             case "text":
                 self._same(block.text)
             case _:
-                raise AssertionError(f"a block of {block.language!r} is none that is run")
+                raise AssertionError(f"a block must be of toml, sh, python or text, not {block.language!r}")
 
     def _run(self, line: str) -> int:
         first, *rest = shlex.split(line)
@@ -89,11 +99,11 @@ class Reader:
 
 
 def words(text: str) -> str:
-    """The text without its numbers, and one space in the place of several, as tables have."""
+    """Return the text without its numbers, with runs of spaces, as tables have them, made one."""
     return re.sub(" +", " ", re.sub(NUMBER, "#", text)).strip()
 
 
 def numbers(text: str) -> list[float]:
-    """All numbers but the seconds that something took, of a run or in a table."""
+    """Return all numbers but the seconds that something took, in a run's line or in a table."""
     text = re.sub(rf" in {NUMBER} s,| {NUMBER} +passes$", "", text, flags=re.MULTILINE)
     return [float(number) for number in re.findall(NUMBER, text)]

@@ -1,6 +1,8 @@
-"""The documents beside the README are true: the tutorial runs, figures are the code's, links lead somewhere."""
+"""The documents are true: the tutorial and all commands run, figures are the code's, links lead somewhere."""
 
 import re
+import shlex
+from pathlib import Path
 
 import documents
 import pytest
@@ -19,7 +21,7 @@ from sim.results.cycles import cycles_per_step
 PARAMETERS = Parameters()
 FORMATS = PARAMETERS.formats
 UPDATED = "issue to its new state in the lanes' memories"
-DOCS = sorted((ROOT / "docs").glob("*.md"))
+every_page = pytest.mark.parametrize("path", documents.PAGES, ids=lambda path: path.stem)
 
 
 def text(name):
@@ -49,7 +51,7 @@ def test_what_the_tutorial_says_is_looked_at(tmp_path, monkeypatch, capsys):
     reader.take(documents.Block("text", "", "took 1.2 in 9 s, all\n"), tmp_path)
 
 
-@pytest.mark.parametrize("path", DOCS, ids=lambda path: path.stem)
+@every_page
 def test_links_lead_somewhere(path):
     targets = re.findall(r"\]\(([^)#]+)[^)]*\)", path.read_text())
     assert targets
@@ -57,9 +59,55 @@ def test_links_lead_somewhere(path):
         assert (path.parent / target).exists(), target
 
 
-@pytest.mark.parametrize("path", DOCS, ids=lambda path: path.stem)
+@every_page
+def test_links_into_a_page_lead_to_a_heading(path):
+    for target, heading in re.findall(r"\]\(([^)#]*)#([^)]*)\)", path.read_text()):
+        headings = re.findall(r"^#+ (.*)$", (path.parent / target if target else path).read_text(), re.MULTILINE)
+        assert heading in [re.sub(r"[^\w -]", "", words).lower().replace(" ", "-") for words in headings], heading
+
+
+@every_page
 def test_the_readme_links_to_it(path):
-    assert f"](docs/{path.name})" in (ROOT / "README.md").read_text()
+    assert path.name == "README.md" or f"](docs/{path.name})" in (ROOT / "README.md").read_text()
+
+
+@every_page
+def test_files_and_folders_exist(path):
+    for name in re.findall(r"`((?:golden|hw|sim|scenes|tests|docs|constraints)/[\w./-]*)`", path.read_text()):
+        assert (ROOT / name).exists(), name
+
+
+@every_page
+def test_make_targets_exist(path):
+    assert set(re.findall(r"(?:`|^)make ([a-z]+)", path.read_text(), re.MULTILINE)) <= documents.targets()
+
+
+@every_page
+def test_commands_parse(path):
+    for line in documents.commands(path):
+        package, *arguments = shlex.split(line)
+        documents.PARSERS[package]().parse_args(arguments)
+
+
+ELSEWHERE = "sim figures", "sim serve", "socket://"
+"""Minutes, or two terminals: test_sim_figures_make.py and test_sim_backends_link_board.py run these."""
+
+
+def test_commands_run(tmp_path, monkeypatch):
+    """Every command of every page but the tutorial, once, in the pages' order: what one writes the next ones use."""
+    monkeypatch.chdir(tmp_path)
+    (block,) = (block for block in documents.blocks(text("scenes")) if block.language == "toml")
+    Path(block.name).write_text(block.text)
+    part = "mesh disc --radius 50 --edge 10 --out part.msh"  # some mesh of the reader's
+    assert documents.COMMANDS["golden"](shlex.split(part)) == 0
+    pages = [path for name in ("scenes", "runs") for path in documents.PAGES if path.stem == name]
+    pages += [path for path in documents.PAGES if path not in pages and path.stem != "tutorial"]
+    lines = dict.fromkeys(line for path in pages for line in documents.commands(path))
+    chosen = [line for line in lines if not any(words in line for words in ELSEWHERE)]
+    for line in chosen:
+        package, *arguments = shlex.split(line)
+        assert documents.COMMANDS[package](arguments) == 0, line
+    assert len(chosen) >= 7 and Path("build/my-page/index.html").exists() and Path("build/my-run/vtu/run.pvd").exists()
 
 
 def figures_of_the_method():
@@ -86,16 +134,16 @@ def figures_of_the_circuit():
     return [
         f"takes {RK4.stages} rounds",
         f"{len(edge)} multipliers of {FORMATS.operand} bits",
-        f"sums {cycles['issue to its force on both nodes']} cycles after",
+        f"sums {cycles['issue to its force on both nodes']} cycles after its issue",
         f"another {len(node)} multipliers",
         f"copy {cycles[UPDATED]} cycles later",
         f"wide enough for {capacity.most_at_a_node(FORMATS)}\nedges",
         f"At least {cycles['an edge to the next edge of the same node, at least']} cycles lie",
         f"{busiest} cycles are {busiest / 100:.1f} microseconds",
-        f"words of {FORMATS.state} bits",
+        f"State words have {FORMATS.state} bits",
         f"factors have {FORMATS.operand} bits",
-        f"with {1 << FORMATS.inverse_index.width} straight pieces",
-        f"two curves of {1 << FORMATS.damper_index.width} pieces",
+        f"with {1 << FORMATS.inverse_index.width} linear segments",
+        f"two curves of {1 << FORMATS.damper_index.width} segments",
         f"for {PARAMETERS.nodes} nodes and {PARAMETERS.edges} edges",
     ]
 

@@ -115,10 +115,10 @@ def test_more_nodes_than_fit_are_refused(loaded):
         Live(board, loaded, np.zeros(0, int))
 
 
-def test_the_readme_says_how_long_an_exchange_takes():
-    readme = Path(__file__).parents[1].joinpath("README.md").read_text()
+def test_the_page_says_how_long_an_exchange_takes():
+    page = Path(__file__).parents[1].joinpath("docs", "link.md").read_text()
     (one, other) = (line_bytes(nodes) for nodes in (1, 9))
-    text = re.sub(r"\s+", " ", readme)
+    text = re.sub(r"\s+", " ", page)
     times = [10 * sum(count) / baud for baud in (1e3, 3e3) for count in (one, other)]  # ms, ten bits a byte
     assert (
         f"For one node {one[0]} bytes go out and {one[1]} come back, {times[0]:.2f} ms on the line at 1 Mbaud and "
