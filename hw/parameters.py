@@ -73,7 +73,7 @@ class Parameters:
             raise ValueError(f"axes must be 1 or {len(AXES)}, not {self.axes!r}")
         if self.family not in FAMILIES:
             raise ValueError(f"family must be {' or '.join(FAMILIES)}, not {self.family!r}")
-        longest = max(records.width(record) for record in (EDGE, NODE))
+        longest = max(EDGE.width, NODE.width)
         if self.formats.state < longest:
             raise ValueError(f"state must be at least {longest} bits, as a list's entry has, not {self.formats.state}")
 

@@ -201,9 +201,9 @@ async def every_word_of_every_memory_holds_what_is_written(dut):
     host = await start(dut)
     formats = {
         Region.NODE: {**dict.fromkeys(MAP.words(Region.NODE)[:9], 36), "inverse_mass": 26, "entry": 33},
-        Region.EDGE: {"entry": records.width(records.edge_entry()), "length": 36, "ratio": 36},
+        Region.EDGE: {"entry": records.edge_entry().width, "length": 36, "ratio": 36},
         Region.MATERIAL: {name: q.width for name, q in records.material(PARAMETERS.formats, 1).items()},
-        Region.TABLE: dict.fromkeys(TABLE_WORDS, records.width(records.damper_word(PARAMETERS.formats)) // 2),
+        Region.TABLE: dict.fromkeys(TABLE_WORDS, records.damper_word(PARAMETERS.formats).width // 2),
     }
     rng = np.random.default_rng(SEED)
     expected = {}

@@ -100,7 +100,7 @@ class Host:
     @staticmethod
     def _issues(lane) -> int:
         """Whether the lane issues a valid edge: the bit is the entry's last."""
-        valid = int(lane.row_front_entry.value) >> records.width(records.edge_entry()) - 1 & 1
+        valid = int(lane.row_front_entry.value) >> records.edge_entry().width - 1 & 1
         return int(lane.row_front_goes.value) & valid
 
     async def refused(self, requests):

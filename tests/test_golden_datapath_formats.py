@@ -39,8 +39,8 @@ def test_widths_are_the_two_word_lengths(operand, state):
     operands = "mantissa", "square", "inverse", "share", "direction", "rate"
     assert all(getattr(fmt, name).width == operand for name in operands)
     # table words are two operands long for each quantity
-    assert records.width(records.inverse_word(fmt)) == 2 * operand
-    assert records.width(records.damper_word(fmt)) == 4 * operand
+    assert records.inverse_word(fmt).width == 2 * operand
+    assert records.damper_word(fmt).width == 4 * operand
 
 
 @pytest.mark.parametrize(("operand", "state"), WORDS)

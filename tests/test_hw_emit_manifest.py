@@ -86,7 +86,7 @@ def test_capacities(regions):
 
 
 def test_fields_are_packed_from_the_lowest_bit(regions):
-    """As `golden.datapath.records.pack` does."""
+    """As `golden.numbers.record.Record.pack` does."""
     expected = {
         ("NODE", "entry"): records.node_entry(),
         ("EDGE", "entry"): records.edge_entry(),
@@ -101,7 +101,7 @@ def test_fields_are_packed_from_the_lowest_bit(regions):
                 low += field["bits"]
                 if record:
                     raw = dict.fromkeys(record, 0) | {field["name"]: 1}
-                    assert records.pack(record, raw) == 1 << field["low"]
+                    assert record.pack(raw) == 1 << field["low"]
             assert low <= P.formats.state
             assert record is None or {field["name"] for field in word["fields"]} == set(record)
 

@@ -9,7 +9,7 @@ from golden.datapath.machine import Machine
 from hw.machine.core import Core
 from hw.machine.host_port import LATENCY
 from hw.machine.lane import latency
-from hw.map.memory_map import ADDRESS_BITS, NODE_FORCE, NODE_STATE, REGION_BITS, Control, Map, Region
+from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region, join
 from hw.parameters import Parameters
 from hw.pipeline.cost import Cost
 from sim.encode.encode import load
@@ -82,7 +82,7 @@ def circuit(image, lanes, **kwargs):
 
 def loading(program):
     """The words of the damper tables that are 0 are so from the start."""
-    table = Region.TABLE << ADDRESS_BITS - REGION_BITS
+    table = join(Region.TABLE, 0, 0, 0)
     return [(address, data) for address, data in program.load() if data or address < table]
 
 

@@ -41,7 +41,7 @@ class Nodes:
 
     def update(self, stage: int, sums, mask):
         """``sums``: (banks, NODES, 3), ``mask``: (NODES, banks)."""
-        q = records.node_state(self.fmt) | {"load": self.fmt.accumulator}
+        q = {**records.node_state(self.fmt), "load": self.fmt.accumulator}
         vectors = self.vectors | {"load": self.load}
         raw = {f"{name}_{a}": (v[:, k], q[name]) for name, v in vectors.items() for k, a in enumerate(AXES)}
         for bank in range(self.banks):
@@ -89,7 +89,7 @@ class Bench:
         for bit in range(3):
             await self.write(ctx, dut.host_write_load, bit, nodes.load[:, bit])
         mass = records.inverse_mass(nodes.fmt)
-        packed = [records.pack(mass, {name: nodes.mass[name][n] for name in mass}) for n in range(NODES)]
+        packed = [mass.pack({name: nodes.mass[name][n] for name in mass}) for n in range(NODES)]
         await self.write(ctx, dut.host_write_mass, 0, packed)
         ctx.set(dut.host, 0)
         await ctx.tick().repeat(HANDOVER)

@@ -7,7 +7,7 @@ from hw_objects import refused
 
 from golden.datapath import records
 from golden.datapath.formats import Formats
-from hw.map.memory_map import ADDRESS_BITS, INDEX_BITS, LANE_BITS, REGION_BITS, WORD_BITS, Control, Map, Region, join
+from hw.map.memory_map import ADDRESS, Control, Map, Region, join
 from hw.parameters import Parameters, updated
 
 RANGES = {
@@ -68,11 +68,11 @@ def test_entries_hold_every_number(p):
 @pytest.mark.parametrize("p", EXAMPLES, ids=str)
 def test_addresses_reach_every_word(p):
     memory = Map(p)
-    assert len(Region) <= 1 << REGION_BITS and ADDRESS_BITS <= 32
+    assert len(Region) - 1 <= ADDRESS["region"].raw_max and ADDRESS.width <= 32
     for region in Region:
-        assert memory.depth(region) <= 1 << INDEX_BITS
-        assert len(memory.words(region)) <= 1 << WORD_BITS
-        assert memory.lanes(region) <= 1 << LANE_BITS
+        assert memory.depth(region) - 1 <= ADDRESS["index"].raw_max
+        assert len(memory.words(region)) - 1 <= ADDRESS["word"].raw_max
+        assert memory.lanes(region) - 1 <= ADDRESS["lane"].raw_max
         if region != Region.CONTROL:
             assert memory.depth(region) <= 1 << p.index_bits
 
@@ -90,7 +90,7 @@ def test_every_word_says_what_it_holds_and_fits(p, region):
     memory = Map(p)
     for word in memory.words(region):
         fields = memory.fields(region, word)
-        assert fields and records.width(fields) <= p.formats.state, word
+        assert fields and fields.width <= p.formats.state, word
 
 
 def test_only_results_are_read_only():
@@ -109,7 +109,7 @@ def test_addresses_are_all_different():
         for lane in range(memory.lanes(region))
     ]
     assert len({memory.address(*place) for place in places}) == len(places)
-    assert all(memory.address(*place) == join(*place) < 1 << ADDRESS_BITS for place in places)
+    assert all(memory.address(*place) == join(*place) < 1 << ADDRESS.width for place in places)
 
 
 def test_a_word_may_be_named():

@@ -93,12 +93,11 @@ def traffic(dut: EdgeProcessor, values, damper, gaps, rng):
     async def load(ctx):
         formats = records.damper_word(datapath.formats)
         for half, quantity in enumerate(("rho", "sigma")):
-            record = {name: q for name, q in formats.items() if name.startswith(quantity)}
+            words = formats.starting_with(quantity).pack(damper).ravel()
             ctx.set(dut.table_write, 1 << half)
-            rows = zip(*(damper[name].ravel().tolist() for name in record), strict=True)
-            for address, row in enumerate(rows):
+            for address, word in enumerate(words.tolist()):
                 ctx.set(dut.table_address, address)
-                ctx.set(dut.table_data, records.pack(record, dict(zip(record, row, strict=True))))
+                ctx.set(dut.table_data, word)
                 await ctx.tick()
         ctx.set(dut.table_write, 0)
 

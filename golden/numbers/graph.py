@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 from golden.numbers.qformat import BIT, Q, count, smallest, total, unsigned
+from golden.numbers.record import Record
 
 AXES = ("x", "y", "z")
 IN_TURN = ("turn",)
@@ -136,10 +137,9 @@ class Graph:
         size = unsigned(x.fmt.int_bits - x.fmt.signed, x.fmt.frac_bits)
         return self.add("gather", size, (x, self.inputs["first_turn"]))
 
-    def read(self, table: str, word: dict[str, Q], *index: Node) -> SimpleNamespace:
+    def read(self, table: str, word: Record, *index: Node) -> SimpleNamespace:
         """The word of ``table`` at ``index``, as a namespace of its fields."""
-        width = sum(q.width for q in word.values())
-        whole = self.add("read", Q(width, 0, signed=False), index, detail=(table, word))
+        whole = self.add("read", unsigned(word.width, 0), index, detail=(table, word))
         return SimpleNamespace(**{name: self.add("part", q, (whole,), detail=name) for name, q in word.items()})
 
     def finish(self, values: dict, outputs: list[str]):
@@ -189,7 +189,7 @@ def flatten(name, value, axes=AXES):
 class Reader:
     """The lookups of `golden.datapath.edge` on graph nodes."""
 
-    def __init__(self, graph: Graph, inverse: dict[str, Q], damper: dict[str, Q]):
+    def __init__(self, graph: Graph, inverse: Record, damper: Record):
         self._graph, self._inverse, self._damper = graph, inverse, damper
 
     def inverse(self, index):

@@ -94,8 +94,7 @@ class QArray:
 
     def field(self, low: int, fmt: Q):
         """Bits ``low`` and up of the integer, read as ``fmt``."""
-        sign = fmt.signed << fmt.width - 1
-        return self._new((self.raw >> low & (1 << fmt.width) - 1 ^ sign) - sign, fmt)
+        return self._new(fmt.from_bits(self.raw >> low), fmt)
 
     def fault(self, name: str):
         """Count a fault called ``name`` wherever this bit is 1."""

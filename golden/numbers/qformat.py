@@ -53,6 +53,11 @@ class Q:
     def raw_max(self) -> int:
         return (1 << self.width - self.signed) - 1
 
+    def from_bits(self, bits):
+        """The integer that the lowest `width` bits of ``bits`` stand for; all higher bits are ignored."""
+        sign = self.signed << self.width - 1
+        return (bits & (1 << self.width) - 1 ^ sign) - sign
+
     @cached_property
     def nameless(self) -> "Q":
         """The same format, but a number that saturates to it is no fault."""

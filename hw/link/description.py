@@ -4,19 +4,17 @@ import hashlib
 import json
 
 from golden.numbers.qformat import Q
+from golden.numbers.record import Record
 from hw.link import protocol
 from hw.link.frame import KEY_BYTES
 from hw.link.identity import IDENTITY_TEXT
 from hw.link.registers import LINK, LINK_TEXT, Link
 from hw.machine.core import datapaths, faults
 from hw.map.memory_map import (
+    ADDRESS,
     CONTROL_TEXT,
-    INDEX_BITS,
-    LANE_BITS,
     READ_ONLY,
-    REGION_BITS,
     VERSION,
-    WORD_BITS,
     Control,
     Map,
     Region,
@@ -71,11 +69,7 @@ def _numbered(texts):
 
 
 def _address():
-    fields, low = [], 0
-    for name, bits in (("index", INDEX_BITS), ("word", WORD_BITS), ("lane", LANE_BITS), ("region", REGION_BITS)):
-        fields.append({"name": name, "low": low, "bits": bits})
-        low += bits
-    return fields
+    return [{"name": name, "low": ADDRESS.offsets[name], "bits": q.width} for name, q in ADDRESS.items()]
 
 
 def _region(memory: Map, region: Region):
@@ -96,12 +90,8 @@ def _region(memory: Map, region: Region):
     }
 
 
-def _fields(record: dict[str, Q]):
-    fields, low = [], 0
-    for name, q in record.items():
-        fields.append({"name": name, "low": low, **_format(q)})
-        low += q.width
-    return fields
+def _fields(record: Record):
+    return [{"name": name, "low": record.offsets[name], **_format(q)} for name, q in record.items()]
 
 
 def _format(q: Q):

@@ -13,7 +13,7 @@ from hw.link.registers import LINK, LinkRegisters
 from hw.link.send import FrameSender
 from hw.link.walk import Walker
 from hw.machine.host_port import host_signature
-from hw.map.memory_map import INDEX_BITS, REGION_BITS, Control, Region, join
+from hw.map.memory_map import ADDRESS, Control, Region, join
 
 
 class Device(wiring.Component):
@@ -100,11 +100,11 @@ class Device(wiring.Component):
         """Who of them uses the host port does so alone; the link's own registers answer beside it. Registers on both
         ways: the circuit is large, and may be far away."""
         walker, pauser, registers = self._walker, self._pauser, self._registers
-        own = walker.port_address[-REGION_BITS:] == LINK
+        own = ADDRESS.field("region", walker.port_address) == LINK
         m.d.comb += [
             registers.request.eq(walker.port_request & own),
             registers.write.eq(walker.port_write),
-            registers.index.eq(walker.port_address[:INDEX_BITS]),
+            registers.index.eq(ADDRESS.field("index", walker.port_address)),
             registers.data.eq(walker.port_write_data),
         ]
         m.d.sync += self.port_request.eq(pauser.port_request | self._faults | walker.port_request & ~own)

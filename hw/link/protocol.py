@@ -6,11 +6,11 @@ write. An answer's are the faults, then a word for each that was read and for ea
 
 from enum import IntEnum
 
-from golden.datapath import records
 from golden.numbers.qformat import BIT, unsigned
+from golden.numbers.record import Record
 from hw.link.frame import GREETING, HEADER
 from hw.link.send import ANSWER_MOST, ANSWERS
-from hw.map.memory_map import ADDRESS_BITS
+from hw.map.memory_map import ADDRESS
 
 VERSION = 1
 ITEM_BYTES = 5
@@ -48,14 +48,16 @@ KIND_TEXT = {
     Kind.CHECK: "gives the CRC-32 of the words' items",
 }
 
-HEAD = {
-    "address": unsigned(ADDRESS_BITS, 0),
-    "across": BIT,
-    "kind": unsigned(2, 0),
-    "unused": unsigned(2, 0),
-    "count": unsigned(8, 0),
-}
-"""A segment's head, a record as in `golden.datapath.records`. ``across``: words of one place behind one another,
+HEAD = Record(
+    {
+        "address": unsigned(ADDRESS.width, 0),
+        "across": BIT,
+        "kind": unsigned(2, 0),
+        "unused": unsigned(2, 0),
+        "count": unsigned(8, 0),
+    }
+)
+"""A segment's head, ``across``: words of one place behind one another,
 instead of places of one word."""
 
 COUNT_MOST = HEAD["count"].raw_max
@@ -86,7 +88,7 @@ BUSY = 0x10
 def head(kind: Kind, address: int, count: int, across: bool = False) -> bytes:
     """A segment's head."""
     fields = {"address": address, "across": int(across), "kind": kind, "unused": 0, "count": count}
-    return item(records.pack(HEAD, fields))
+    return item(HEAD.pack(fields))
 
 
 def item(word: int) -> bytes:
@@ -97,4 +99,4 @@ def items(payload: bytes) -> list[int]:
     return [int.from_bytes(payload[n : n + ITEM_BYTES], "little") for n in range(0, len(payload), ITEM_BYTES)]
 
 
-assert records.width(HEAD) == 8 * ITEM_BYTES
+assert HEAD.width == 8 * ITEM_BYTES

@@ -7,7 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hw.link.receive import EVENTS
-from hw.map.memory_map import INDEX_BITS, Region
+from hw.map.memory_map import ADDRESS, Region
 
 LINK = len(Region)
 """Number of their region, behind those of the circuit."""
@@ -77,7 +77,7 @@ class LinkRegisters(wiring.Component):
             {
                 "request": In(1),
                 "write": In(1),
-                "index": In(INDEX_BITS),
+                "index": In(ADDRESS["index"].width),
                 "data": In(state),
                 "answer": Out(1),
                 "error": Out(1),

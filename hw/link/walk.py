@@ -8,8 +8,7 @@ from hw.blocks.memory import READ_LATENCY
 from hw.link.frame import CRC, PAYLOAD_MOST
 from hw.link.protocol import HEAD, ITEM_BYTES, ITEMS_MOST, Kind
 from hw.machine.host_port import host_signature
-from hw.map.fields import unpack
-from hw.map.memory_map import INDEX_BITS, WORD_BITS, Control, Region, join
+from hw.map.memory_map import ADDRESS, Control, Region, join
 
 FARTHEST = PAYLOAD_MOST + ITEM_BYTES * HEAD["count"].raw_max
 """Where the payload would end, if the words of a write are not all there."""
@@ -133,7 +132,7 @@ class Walker(wiring.Component):
                     with m.If(self._writes):
                         m.next = "access"
         with m.State("head"):
-            m.d.sync += [self._segment[name].eq(part) for name, part in unpack(HEAD, self._word).items()]
+            m.d.sync += [self._segment[name].eq(part) for name, part in HEAD.unpack(self._word).items()]
             m.next = "words"
             with m.If(self._dry):
                 m.next = "measure"
@@ -200,7 +199,7 @@ class Walker(wiring.Component):
 
     def _next(self, m, address, across):
         """Within its field: a segment that is too long meets its own beginning, and nothing else."""
-        index, word = address[:INDEX_BITS], address[INDEX_BITS : INDEX_BITS + WORD_BITS]
+        index, word = ADDRESS.field("index", address), ADDRESS.field("word", address)
         with m.If(across):
             m.d.sync += word.eq(word + 1)
         with m.Else():

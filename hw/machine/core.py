@@ -20,7 +20,7 @@ from hw.machine.issue_register import Front
 from hw.machine.lane import COPIED, NEXT, NODE_WORDS, STAGED, Lane, latency, written
 from hw.machine.sequencer import Sequencer
 from hw.machine.updater import NodeDatapath, NodeUpdater
-from hw.map.fields import stage_bits, unpack
+from hw.map.fields import stage_bits
 from hw.map.memory_map import COUNTERS, Map, Region
 from hw.parameters import Parameters
 from hw.pipeline.delay import DelayLines
@@ -125,7 +125,7 @@ class Core(wiring.Component):
 
     def _entries(self, name, record, depth, fetch_address, host_address, write):
         """A list's memory: what the host does with it is far from it, as for all other memories."""
-        self._m.submodules[name] = entries = List(width=records.width(record), depth=depth)
+        self._m.submodules[name] = entries = List(width=record.width, depth=depth)
 
         def far(value, of):
             return self._lines.later(value, HANDOVER - 1, name=f"{name}_{of}", reset=of == "write")
@@ -185,7 +185,7 @@ class Core(wiring.Component):
         """A row is an edge for every lane."""
         m, p, host = self._m, self.parameters, self._host
         record = records.edge_entry()
-        width = records.width(record)
+        width = record.width
         m.submodules.row_highest = last = highest.Highest(count=2 * p.lanes, width=p.node_row_bits)
         size = width * p.lanes + p.node_row_bits
         m.submodules.row_fetch = fetch = PacedFetch(index_bits=p.row_bits, width=size, data_latency=row_latency(p))
@@ -195,7 +195,7 @@ class Core(wiring.Component):
             entries = self._entries(f"edge_entries{number}", record, p.rows, fetch.address, self._access.index, write)
             words.append(entries.entry)
             self._edge_entries.append(entries.data)
-        edges = [unpack(record, word) for word in words]
+        edges = [record.unpack(word) for word in words]
         behind_memory = row_latency(p) - LISTED
         later = [self._lines.later(word, behind_memory, name=f"edge_entry{n}") for n, word in enumerate(words)]
         m.d.comb += [
@@ -207,7 +207,7 @@ class Core(wiring.Component):
         front = self._front("row", "node", fetch, lambda word: word[width * p.lanes :], 0)
 
         entries = [slice(n * width, (n + 1) * width) for n in range(p.lanes)]
-        self._valid = [unpack(record, front.word[entry])["valid"] for entry in entries]
+        self._valid = [record.field("valid", front.word[entry]) for entry in entries]
         bits = stage_bits(self._sequencer.row_stage)
         stage = {bit: self._lines.later(value, STAGED, name=bit) for bit, value in bits.items()}
         for lane, entry in zip(self._lanes, entries, strict=True):
@@ -223,7 +223,7 @@ class Core(wiring.Component):
         """A row of nodes is a node for every updater."""
         m, p, host, sequencer = self._m, self.parameters, self._host, self._sequencer
         record = records.node_entry()
-        width = records.width(record)
+        width = record.width
         m.submodules.node_fetch = fetch = PacedFetch(
             index_bits=p.node_row_bits, width=width * p.updates, data_latency=LISTED
         )
@@ -240,9 +240,9 @@ class Core(wiring.Component):
             fetch.data.eq(Cat(*words)),
         ]
         # A node needs as many rows, a row the node of that number
-        front = self._front("node", "row", fetch, lambda word: unpack(record, word)["need"][: p.row_bits + 1], 1)
+        front = self._front("node", "row", fetch, lambda word: record.field("need", word)[: p.row_bits + 1], 1)
         for number, updater in enumerate(self._updaters):
-            entry = unpack(record, front.word[number * width : (number + 1) * width])
+            entry = record.unpack(front.word[number * width : (number + 1) * width])
             m.d.comb += [
                 updater.valid.eq(sequencer.node_goes & entry["valid"]),
                 updater.row.eq(front.index),

@@ -80,7 +80,7 @@ class EdgeProcessor(wiring.Component):
         self.datapath = datapath
         fmt, graph = datapath.formats, datapath.graph
         self._depth = datapath.tables << fmt.damper_index.width
-        self._word = records.width(records.damper_word(fmt))
+        self._word = records.damper_word(fmt).width
         address = max(1, (self._depth - 1).bit_length())
         super().__init__(
             {
@@ -111,10 +111,10 @@ class EdgeProcessor(wiring.Component):
         fmt = self.datapath.formats
         word, contents = records.inverse_word(fmt), inverse_table(fmt)
         columns = zip(*contents.values(), strict=True)
-        rows = [records.pack(word, dict(zip(contents, column, strict=True))) for column in columns]
+        rows = [word.pack(dict(zip(contents, column, strict=True))) for column in columns]
 
         def lookup(index):
-            m.submodules.inverse_table = rom = BlockRam(width=records.width(word), depth=len(rows), init=rows)
+            m.submodules.inverse_table = rom = BlockRam(width=word.width, depth=len(rows), init=rows)
             m.d.comb += rom.address.eq(index)
             return rom.data
 

@@ -6,15 +6,11 @@ from amaranth.lib.wiring import In, Out
 
 from hw.blocks.memory import READ_LATENCY
 from hw.map.memory_map import (
-    ADDRESS_BITS,
+    ADDRESS,
     COUNTERS,
-    INDEX_BITS,
-    LANE_BITS,
     MAGIC,
     READ_ONLY,
-    REGION_BITS,
     VERSION,
-    WORD_BITS,
     Control,
     Map,
     Region,
@@ -59,7 +55,7 @@ def host_signature(state: int) -> dict:
     return {
         "request": In(1),
         "write": In(1),
-        "address": In(ADDRESS_BITS),
+        "address": In(ADDRESS.width),
         "write_data": In(state),
         "answer": Out(1),
         "error": Out(1),
@@ -98,8 +94,8 @@ class HostPort(wiring.Component):
                 **host_signature(state),
                 "index": Out(p.index_bits),
                 "data": Out(state),
-                "word": Out(WORD_BITS),
-                "lane": Out(LANE_BITS),
+                "word": Out(ADDRESS["word"].width),
+                "lane": Out(ADDRESS["lane"].width),
                 "strobe": Out(len(Region)),
                 **{word_of(region): In(state) for region in Region if region != Region.CONTROL},
                 "start": Out(1),
@@ -120,11 +116,7 @@ class HostPort(wiring.Component):
         request, write, address, data = self._registered(
             m, "asked", self.request, self.write, self.address, self.write_data
         )
-        parts, low = [], 0
-        for bits in (INDEX_BITS, WORD_BITS, LANE_BITS, REGION_BITS):
-            parts.append(address[low : low + bits])
-            low += bits
-        index, word, lane, region = parts
+        index, word, lane, region = ADDRESS.unpack(address).values()
 
         inside, small, some = Signal(len(Region)), self._small_enough(data), data.any()
         for r in Region:

@@ -11,7 +11,6 @@ from hw.machine.accumulator import ANNOUNCED, WRITTEN, Accumulator
 from hw.machine.edge import EdgeDatapath, EdgeProcessor
 from hw.machine.host_port import CHOICE, HANDOVER, MEMORY, handed
 from hw.machine.issue_register import Front
-from hw.map.fields import unpack
 from hw.parameters import Parameters
 from hw.pipeline.choice import choose
 from hw.pipeline.delay import DelayLines
@@ -51,7 +50,7 @@ def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
     return {
         "flush": In(1),
         "row_behind": In(p.row_bits),
-        "edge_behind": In(records.width(records.edge_entry())),
+        "edge_behind": In(records.edge_entry().width),
         "node_behind": In(p.node_row_bits),
         **{f"{name}_{port}": In(1) for name in ("row", "node") for port in ("behind_valid", "behind_ready", "ready")},
         **{f"stage_{bit}": In(1) for bit in ("first", "last", "half", "double")},
@@ -156,7 +155,7 @@ class Lane(wiring.Component):
             for port in ("behind_valid", "behind_ready", "ready"):
                 self._m.d.comb += getattr(front, port).eq(getattr(self, f"{name}_{port}"))
         entry, width = fronts["row"].entry, len(self.edge_behind)
-        self._issued = unpack(records.edge_entry(), entry[:width])
+        self._issued = records.edge_entry().unpack(entry[:width])
         self._issued["valid"] = self._issued["valid"] & fronts["row"].goes
         for name, bits in (
             ("i", self.parameters.node_bits),

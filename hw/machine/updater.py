@@ -232,15 +232,13 @@ class NodeUpdater(wiring.Component):
             self._written(f"load_{axis}", ram, by_host=(self._any(strobes, axis), self._host("data")))
         for axis in AXES:
             self._m.d.comb += getattr(self, f"host_load_{axis}").eq(memories[f"load_{self._of(axis)}"].data)
-        low = 0
+        parts, host = self._mass.unpack(self._host("data")), self._mass.unpack(self.host_mass)
         for part, q in self._mass.items():
             name = f"inverse_mass_{part}"
             ram = self._memory(name, q.width, arrival[name], vector=False)
             inputs[name] = self._near(name, ram, q)
-            data = self._host("data")[low : low + q.width]
-            self._written(name, ram, vector=False, by_host=(self._host("write_mass"), data))
-            self._m.d.comb += self.host_mass[low : low + q.width].eq(ram.data)
-            low += q.width
+            self._written(name, ram, vector=False, by_host=(self._host("write_mass"), parts[part]))
+            self._m.d.comb += host[part].eq(ram.data)
         return memories
 
     def _of(self, axis: str) -> str:

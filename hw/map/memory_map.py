@@ -5,11 +5,12 @@ from enum import IntEnum
 
 from golden.datapath import records
 from golden.numbers.graph import AXES
-from golden.numbers.qformat import Q, unsigned
+from golden.numbers.qformat import unsigned
+from golden.numbers.record import Record
 from hw.parameters import Parameters
 
-INDEX_BITS, WORD_BITS, LANE_BITS, REGION_BITS = 16, 5, 3, 3
-ADDRESS_BITS = INDEX_BITS + WORD_BITS + LANE_BITS + REGION_BITS
+ADDRESS = Record({"index": unsigned(16, 0), "word": unsigned(5, 0), "lane": unsigned(3, 0), "region": unsigned(3, 0)})
+"""A host address."""
 
 MAGIC = int.from_bytes(b"RHEO")
 VERSION = 1
@@ -112,17 +113,17 @@ class Map:
             Region.TABLE: p.tables << p.formats.damper_index.width,
         }[region]
 
-    def fields(self, region: Region, word: str) -> dict[str, Q]:
+    def fields(self, region: Region, word: str) -> Record:
         """What a word holds, lowest bits first."""
         fmt, tables = self.parameters.formats, self.parameters.tables
         if region == Region.CONTROL:
-            return {"value": unsigned(fmt.state, 0)}
+            return Record({"value": unsigned(fmt.state, 0)})
         if word == "entry":
             return records.node_entry() if region == Region.NODE else records.edge_entry()
         if word == "inverse_mass":
             return records.inverse_mass(fmt)
         if region == Region.TABLE:
-            return {name: q for name, q in records.damper_word(fmt).items() if name.startswith(word)}
+            return records.damper_word(fmt).starting_with(word)
         node = {"x": fmt.position, "v": fmt.velocity, "load": fmt.accumulator, "force": fmt.accumulator}
         edge = {"length": fmt.length, "ratio": fmt.ratio}
         formats = {
@@ -130,12 +131,13 @@ class Map:
             Region.EDGE: edge,
             Region.MATERIAL: records.material(fmt, tables),
         }
-        return {"value": formats[region][word]}
+        return Record({"value": formats[region][word]})
 
     def mask(self, address: int) -> int:
         """The bits of a word that are there to be read back: those of its fields."""
-        word, region = address >> INDEX_BITS & (1 << WORD_BITS) - 1, Region(address >> ADDRESS_BITS - REGION_BITS)
-        return (1 << records.width(self.fields(region, self.words(region)[word]))) - 1
+        region = Region(ADDRESS.field("region", address))
+        word = self.words(region)[ADDRESS.field("word", address)]
+        return (1 << self.fields(region, word).width) - 1
 
     def read_only(self, region: Region, word: str) -> bool:
         return region == Region.NODE and word in NODE_FORCE
@@ -155,5 +157,5 @@ class Map:
 
 
 def join(region: int, word: int, index: int, lane: int) -> int:
-    """The address, index lowest."""
-    return ((region << LANE_BITS | lane) << WORD_BITS | word) << INDEX_BITS | index
+    """Return the address."""
+    return ADDRESS.pack({"index": index, "word": word, "lane": lane, "region": region})

@@ -236,14 +236,9 @@ def step_count(node) -> int:
 
 def field(node, x):
     """Wires only: bits of the operand, or the operand as it is in another format."""
+    if node.kind == "part":
+        _, word = node.operands[0].detail
+        return word.field(node.detail, x)
     if node.kind == "field":
         x = x[node.detail : node.detail + node.fmt.width]
-    elif node.kind == "part":
-        low = 0
-        _, word = node.operands[0].detail
-        for name, q in word.items():
-            if name == node.detail:
-                break
-            low += q.width
-        x = x[low : low + node.fmt.width]
     return x.as_signed() if node.fmt.signed else x.as_unsigned()

@@ -61,13 +61,9 @@ class EdgeBench:
 
     def load(self, damper: dict[str, np.ndarray]):
         """The damper tables: `golden.datapath.records.damper_word` -> (tables, segments)."""
-        word = records.damper_word(self.datapath.formats)
+        word, flat = records.damper_word(self.datapath.formats), {name: x.ravel() for name, x in damper.items()}
         for half, quantity in enumerate(("rho", "sigma")):
-            packed, low = np.uint64(0), 0
-            for name, q in word.items():
-                if name.startswith(quantity):
-                    packed = packed | damper[name].ravel().astype(np.uint64) << np.uint64(low)
-                    low += q.width
+            packed = word.starting_with(quantity).pack(flat)
             self._shared.bench_table(self._handle, half, len(packed), packed.ctypes.data)
 
     def run(self, vectors: np.ndarray, velocity_shift: int, entry: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

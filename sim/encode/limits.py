@@ -58,6 +58,6 @@ def _check_masses(loaded: Loaded) -> None:
 
 def _check(record, fields, what: str) -> None:
     try:
-        records.pack(record, fields)
+        record.pack(fields)
     except ValueError as error:
         raise InputError(f"{what} that the circuit can hold, beside the scene's other forces: {error}") from None

@@ -61,11 +61,7 @@ class Program:
         columns += zip(NODE_STATE[:3], x.T, strict=True) if x is not None else []
         for name, column in columns:
             yield from self._column(Region.NODE, name, column)
-        packed = [
-            records.pack(mass, {name: values[n] for name, values in image.inverse_mass.items()})
-            for n in range(image.nodes)
-        ]
-        yield from self._column(Region.NODE, "inverse_mass", packed)
+        yield from self._column(Region.NODE, "inverse_mass", mass.pack(image.inverse_mass))
 
     def need(self) -> np.ndarray:
         """(node rows,) how many rows of edges have to be summed before a row of nodes may be updated."""
@@ -118,11 +114,8 @@ class Program:
     def _tables(self):
         words = records.damper_word(self.parameters.formats)
         for quantity in ("rho", "sigma"):
-            record = {name: q for name, q in words.items() if name.startswith(quantity)}
-            columns = [self.image.damper[name].ravel() for name in record]
-            for index, row in enumerate(zip(*columns, strict=True)):
-                packed = records.pack(record, dict(zip(record, row, strict=True)))
-                yield self._address(Region.TABLE, quantity, index), packed
+            packed = words.starting_with(quantity).pack(self.image.damper).ravel()
+            yield from self._column(Region.TABLE, quantity, packed)
 
     def _edges(self):
         image = self.image
@@ -144,8 +137,8 @@ class Program:
                     bank = 1 << half * lanes + lane
                     fields |= {end: n, f"{end}_first": int(not mask[n] & bank)}
                     mask[n] |= bank
-            yield self._address(Region.EDGE, "entry", row, lane), records.pack(records.edge_entry(), fields)
+            yield self._address(Region.EDGE, "entry", row, lane), records.edge_entry().pack(fields)
         for n in range(len(need)):
             fields = {"need": need[n], "mask": mask[n], "valid": int(n < image.nodes)}
-            entry = records.pack(records.node_entry(), fields)
+            entry = records.node_entry().pack(fields)
             yield self._address(Region.NODE, "entry", n), entry

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 
 from hw.link.frame import PAYLOAD_MOST
 from hw.link.protocol import COUNT_MOST, ITEM_BYTES, ITEMS_MOST, Kind, head, item
-from hw.map.memory_map import INDEX_BITS
+from hw.map.memory_map import ADDRESS
 
-STRIDES = {False: 1, True: 1 << INDEX_BITS}
+STRIDES = {False: 1, True: 1 << ADDRESS.offsets["word"]}
 """From a word's address to the next: places of one word, or (across) words of one place."""
 
 PAYLOAD_ITEMS = PAYLOAD_MOST // ITEM_BYTES
