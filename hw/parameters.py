@@ -78,9 +78,9 @@ class Parameters:
             raise ValueError(f"state must be at least {longest} bits, as a list's entry has, not {self.formats.state}")
 
     @property
-    def turns(self) -> int:
+    def cycles_per_node(self) -> int:
         """Cycles that an updater takes for a node."""
-        return turns(self)
+        return cycles_per_node(self)
 
     @property
     def rows(self) -> int:
@@ -118,14 +118,14 @@ class Parameters:
         return (max(self.rows, self.nodes, self.materials, table) - 1).bit_length()
 
 
-def turns(sizes) -> int:
+def cycles_per_node(sizes) -> int:
     """Cycles that an updater takes for a node, of `Parameters` or anything with the same sizes."""
     return len(AXES) // sizes.axes
 
 
 def updated(sizes) -> str:
     """Nodes that are updated per cycle."""
-    return str(sizes.updates) if turns(sizes) == 1 else f"{sizes.updates}/{turns(sizes)}"
+    return str(sizes.updates) if cycles_per_node(sizes) == 1 else f"{sizes.updates}/{cycles_per_node(sizes)}"
 
 
 def counted(sizes) -> str:

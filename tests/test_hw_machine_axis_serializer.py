@@ -3,13 +3,13 @@
 from hw_objects import simulate
 
 from golden.numbers.graph import AXES
-from hw.machine.axis_serializer import Turns
+from hw.machine.axis_serializer import AxisSerializer
 
 WIDTH = 7
 
 
 def test_every_axis_of_every_node_has_its_turn(rng):
-    dut, expected, seen = Turns(width=WIDTH), [], []
+    dut, expected, seen = AxisSerializer(width=WIDTH), [], []
 
     async def bench(ctx):
         for _ in range(50):

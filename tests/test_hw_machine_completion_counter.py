@@ -3,13 +3,13 @@
 import pytest
 from hw_objects import simulate
 
-from hw.machine.completion_counter import Progress
+from hw.machine.completion_counter import CompletionCounter
 
 
 @pytest.mark.parametrize(("first", "length"), [(0, 1), (0, 2), (0, 8), (1, 1), (1, 2), (1, 7)])
 def test_what_is_reached_is_what_is_less_than_the_count(first, length, rng):
     """The last entry is done as often as any: with it the next list begins. The longest list fills the count."""
-    dut, seen, needs = Progress(width=3, first=first), set(), min(8, length + first + 1)
+    dut, seen, needs = CompletionCounter(width=3, first=first), set(), min(8, length + first + 1)
 
     async def bench(ctx):
         count, (front, behind, after) = first, rng.integers(needs, size=3)

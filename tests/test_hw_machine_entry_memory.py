@@ -2,11 +2,11 @@
 
 from hw_objects import simulate
 
-from hw.machine.entry_memory import LATENCY, List
+from hw.machine.entry_memory import LATENCY, EntryMemory
 
 
 def test_what_is_written_is_read_by_both(rng):
-    dut, words = List(width=12, depth=20), [int(w) for w in rng.integers(0, 1 << 12, 20)]
+    dut, words = EntryMemory(width=12, depth=20), [int(w) for w in rng.integers(0, 1 << 12, 20)]
 
     async def bench(ctx):
         for place, word in enumerate(words):

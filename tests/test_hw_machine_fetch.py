@@ -6,7 +6,7 @@ from hw_objects import simulate
 
 from hw.blocks.memory import READ_LATENCY
 from hw.machine.fetch import Fetch, PacedFetch, latency
-from hw.machine.issue_register import Front
+from hw.machine.issue_register import IssueRegister
 
 BITS = 6
 
@@ -114,7 +114,7 @@ def test_a_flush_starts_over_with_another_count(rng):
 @pytest.mark.parametrize("there", [0.3, 0.7, 1.0])
 def test_a_paced_fetch_moves_with_the_front_of_its_list(there, rng):
     """The front, which stands elsewhere, gets every entry once and in order."""
-    m, fetch, front = Module(), PacedFetch(index_bits=BITS, width=8), Front(width=8)
+    m, fetch, front = Module(), PacedFetch(index_bits=BITS, width=8), IssueRegister(width=8)
     m.submodules.fetch, m.submodules.front = fetch, front
     m.d.comb += [front.flush.eq(fetch.flush), front.behind.eq(fetch.word), front.behind_valid.eq(fetch.valid)]
     m.d.comb += [front.behind_ready.eq(fetch.behind_ready), front.ready.eq(fetch.ready)]

@@ -3,12 +3,12 @@
 import pytest
 from hw_objects import simulate
 
-from hw.machine.issue_register import LATENCY, Front
+from hw.machine.issue_register import LATENCY, IssueRegister
 
 
 @pytest.mark.parametrize(("there", "ready"), [(1.0, 1.0), (0.5, 1.0), (1.0, 0.3), (0.6, 0.5)])
 def test_entries_go_in_order_and_only_when_ready(there, ready, rng):
-    dut, taken, found, cycles = Front(width=8), [], set(), 400
+    dut, taken, found, cycles = IssueRegister(width=8), [], set(), 400
 
     async def bench(ctx):
         number = 0  # of the entry behind
@@ -42,7 +42,7 @@ def test_entries_go_in_order_and_only_when_ready(there, ready, rng):
 
 
 def test_a_flush_empties_it():
-    dut = Front(width=8)
+    dut = IssueRegister(width=8)
 
     async def bench(ctx):
         ctx.set(dut.behind_valid, 1)

@@ -53,7 +53,7 @@ class Run:
         self._standing, self._goes = (
             [False, False],
             [False, False],
-        )  # in front: a row, a node (`hw.machine.issue_register.Front`)
+        )  # in front: a row, a node (`hw.machine.issue_register.IssueRegister`)
         self.rows_summed = self.nodes_updated = 0  # over all stages, before this cycle
         self.cycles = self.waits = 0
 
@@ -164,7 +164,7 @@ def test_random_lists(kind, ready, latencies, rng):
 @pytest.mark.parametrize("kind", ["sorted", "shuffled", "backwards", "empty"])
 @pytest.mark.parametrize("ready", [1.0, 0.6])
 def test_nodes_have_their_turns(kind, ready, rng):
-    dut, runs = Sequencer(turns=3), []
+    dut, runs = Sequencer(cycles_per_node=3), []
     for latencies in (1, 3), (12, 5), (3, 20):
         lists = random_lists(rng, int(rng.integers(2, 20)), int(rng.integers(1, 25)), int(rng.integers(1, 4)), kind)
         runs.append(Run(dut, lists, int(rng.integers(1, 4)), latencies, ready, rng, turns=3))

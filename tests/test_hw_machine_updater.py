@@ -67,7 +67,7 @@ class Bench:
         self.faults = set()
 
     def turn(self, ctx, axis: str):
-        if self.dut.datapath.turns > 1 and axis in AXES:
+        if self.dut.datapath.cycles_per_node > 1 and axis in AXES:
             ctx.set(self.dut.host_axis, AXES.index(axis))
 
     async def write(self, ctx, strobe, bit, values):
@@ -102,7 +102,7 @@ class Bench:
         mask = rng.integers(2, size=(NODES, self.nodes.banks))
         self.nodes.update(number, sums, mask)
         gaps = rng.integers(0, self.widest_gap, NODES, endpoint=True)
-        cycles = np.cumsum(gaps) + dut.datapath.turns * np.arange(NODES)
+        cycles = np.cumsum(gaps) + dut.datapath.cycles_per_node * np.arange(NODES)
         issued = dict(zip(cycles.tolist(), self.order.tolist(), strict=True))
         for bit, value in RK4.stage(number).items():
             ctx.set(getattr(dut, f"stage_{bit}"), value)

@@ -40,7 +40,7 @@ def test_axes_that_an_updater_cannot_take_at_a_time(axes):
 
 
 def test_an_updater_takes_as_many_turns_as_a_node_has_axes_for_each():
-    assert (Parameters(axes=3).turns, Parameters(axes=1).turns) == (1, 3)
+    assert (Parameters(axes=3).cycles_per_node, Parameters(axes=1).cycles_per_node) == (1, 3)
     assert [updated(Parameters(updates=m, axes=axes)) for m in (1, 2) for axes in (3, 1)] == ["1", "1/3", "2", "2/3"]
 
 

@@ -6,7 +6,7 @@ from integer_objects import MATERIALS, pressed
 
 from golden.datapath.rk4 import RK4
 from golden.mesh.mesh import box, rectangle
-from hw.machine.issue_register import LATENCY as FRONT_LATENCY
+from hw.machine.issue_register import LATENCY as ISSUE_LATENCY
 from hw.machine.latency import Latencies
 from hw.parameters import Parameters
 from sim.encode.encode import load
@@ -55,7 +55,7 @@ def test_a_step_takes_no_less_than_its_rows_its_nodes_and_its_loop(lanes):
 def test_with_latencies_of_nothing_the_longer_list_says_how_long_a_step_takes():
     model, image = wavefront((9, 9), 1, latencies=Latencies(0, 0, 0, 0))
     assert model.per_step() == RK4.stages * len(image.edges)
-    assert model.run(3)[-1] + FRONT_LATENCY >= 3 * model.per_step()
+    assert model.run(3)[-1] + ISSUE_LATENCY >= 3 * model.per_step()
 
 
 def test_with_an_axis_at_a_time_nodes_say_how_long_a_step_takes_where_they_have_few_edges():

@@ -49,7 +49,7 @@ class Access:
                 updater.host_write_load.eq(self._node_strobes(NODE_LOAD, number)),
                 updater.host_write_mass.eq(self._node_strobes(["inverse_mass"], number)),
             ]
-            if self._parameters.turns > 1:
+            if self._parameters.cycles_per_node > 1:
                 self._m.d.comb += updater.host_axis.eq(self._axis)
             reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
             reads += [updater.host_mass, entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]

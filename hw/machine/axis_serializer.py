@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out
 from golden.numbers.graph import AXES
 
 
-class Turns(wiring.Component):
+class AxisSerializer(wiring.Component):
     """Holds what came with a node for as many cycles as a node has axes. Latency 1 cycle; the next node comes no sooner
     than its axes have had their turns.
 

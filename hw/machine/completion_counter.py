@@ -5,7 +5,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 
-class Progress(wiring.Component):
+class CompletionCounter(wiring.Component):
     """Counts a list's entries as they are done, and compares the number with what the entries of another list need.
 
     The other list's entries stand one behind the other: the one in front, the one behind it and the one after that
@@ -35,7 +35,7 @@ class Progress(wiring.Component):
 
     def __init__(self, *, width: int, first: int):
         self._first = first
-        self.kind = f"progress_{width}_from_{first}"
+        self.kind = f"completion_counter_{width}_from_{first}"
         super().__init__(
             {
                 "clear": In(1),

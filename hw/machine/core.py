@@ -10,13 +10,13 @@ from golden.datapath import records
 from golden.numbers.graph import AXES
 from hw.blocks import highest
 from hw.machine.access import Access
-from hw.machine.completion_counter import Progress
+from hw.machine.completion_counter import CompletionCounter
 from hw.machine.edge import EdgeDatapath
 from hw.machine.entry_memory import LATENCY as LISTED
-from hw.machine.entry_memory import List
+from hw.machine.entry_memory import EntryMemory
 from hw.machine.fetch import PacedFetch
 from hw.machine.host_port import HANDOVER, HostPort, host_signature
-from hw.machine.issue_register import Front
+from hw.machine.issue_register import IssueRegister
 from hw.machine.lane import COPIED, NEXT, NODE_WORDS, STAGED, Lane, latency, written
 from hw.machine.sequencer import Sequencer
 from hw.machine.updater import NodeDatapath, NodeUpdater
@@ -33,7 +33,7 @@ def row_latency(parameters: Parameters) -> int:
 
 def datapaths(p: Parameters) -> tuple[EdgeDatapath, NodeDatapath]:
     """Of an edge and of a node."""
-    return EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost, p.turns)
+    return EdgeDatapath(p.formats, p.tables, p.cost), NodeDatapath(p.formats, p.lanes, p.cost, p.cycles_per_node)
 
 
 def faults(edge: EdgeDatapath, node: NodeDatapath) -> list[str]:
@@ -77,7 +77,7 @@ class Core(wiring.Component):
         m = Module()
         self._m, self._lines, p = m, DelayLines(m), self.parameters
         m.submodules.host = self._host = HostPort(Map(p), len(self.faults))
-        m.submodules.sequencer = self._sequencer = Sequencer(turns=p.turns)
+        m.submodules.sequencer = self._sequencer = Sequencer(cycles_per_node=p.cycles_per_node)
         self._updaters = []
         for number in range(p.updates):
             m.submodules[f"updater{number}"] = updater = NodeUpdater(p, self.node_datapath)
@@ -125,7 +125,7 @@ class Core(wiring.Component):
 
     def _entries(self, name, record, depth, fetch_address, host_address, write):
         """A list's memory: what the host does with it is far from it, as for all other memories."""
-        self._m.submodules[name] = entries = List(width=record.width, depth=depth)
+        self._m.submodules[name] = entries = EntryMemory(width=record.width, depth=depth)
 
         def far(value, of):
             return self._lines.later(value, HANDOVER - 1, name=f"{name}_{of}", reset=of == "write")
@@ -144,10 +144,10 @@ class Core(wiring.Component):
         """The list's entry in front: ``word``, ``last``, ``index``. ``need`` of an entry's word is what waits for the
         other list's `hw.machine.completion_counter`, which counts from ``first``."""
         m, sequencer, behind = self._m, self._sequencer, Cat(fetch.word, fetch.last, fetch.index)
-        m.submodules[f"{name}_front"] = front = Front(width=len(behind))
+        m.submodules[f"{name}_front"] = front = IssueRegister(width=len(behind))
         words = len(fetch.word)
         entry = SimpleNamespace(word=front.entry[:words], last=front.entry[words], index=front.entry[words + 1 :])
-        m.submodules[f"{other}_progress"] = progress = Progress(width=len(need(fetch.word)), first=first)
+        m.submodules[f"{other}_progress"] = progress = CompletionCounter(width=len(need(fetch.word)), first=first)
         for lane in self._lanes:
             m.d.comb += [
                 getattr(lane, f"{name}_behind_valid").eq(fetch.valid),

@@ -5,13 +5,13 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hw.blocks.memory import READ_LATENCY, BlockRam
-from hw.machine.host_port import handed
+from hw.machine.host_port import registered_ports
 
 LATENCY = 1 + READ_LATENCY + 1
 """Cycles from a list's address to its entry: a register before the memory, whose place is given, another behind it."""
 
 
-class List(wiring.Component):
+class EntryMemory(wiring.Component):
     """A memory with registers of its own at all of its ports, wherever those are that read and write it.
 
     Throughput: an entry a cycle, `LATENCY` cycles behind its address.
@@ -33,7 +33,7 @@ class List(wiring.Component):
 
     def __init__(self, *, width: int, depth: int):
         self._ram = ram = BlockRam(width=width, depth=depth)
-        self.kind = f"list_{depth}x{width}"
+        self.kind = f"entry_memory_{depth}x{width}"
         bits = len(ram.address)
         super().__init__(
             {
@@ -52,7 +52,9 @@ class List(wiring.Component):
         m = Module()
         m.submodules.ram = ram = self._ram
         by_host = {port: getattr(self, port) for port in ("write", "write_address", "write_data")}
-        handed(m, ram, "ram", self.host, {"address": self.host_address, **by_host}, {"address": self.fetch_address})
+        registered_ports(
+            m, ram, "ram", self.host, {"address": self.host_address, **by_host}, {"address": self.fetch_address}
+        )
         entry = Signal(len(self.entry), reset_less=True)
         m.d.sync += entry.eq(ram.data)
         m.d.comb += [self.data.eq(ram.data), self.entry.eq(entry)]

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from hw.blocks.memory import READ_LATENCY
 from hw.blocks.queue import Queue
-from hw.machine.issue_register import Front
+from hw.machine.issue_register import IssueRegister
 
 
 def latency(data_latency: int) -> int:
@@ -102,13 +102,13 @@ class Fetch(wiring.Component):
 
 
 class PacedFetch(wiring.Component):
-    """A `Fetch` that knows by itself when its entry moves to the `hw.machine.issue_register.Front` of a list. It has
+    """A `Fetch` that knows when its entry moves to the list's `hw.machine.issue_register.IssueRegister`. It has
     the register that says so of its own: the queue hangs on it, and may stand far from the front.
 
     Members
     -------
     behind_ready, ready : In(1)
-        As of the `hw.machine.issue_register.Front`.
+        As of the `hw.machine.issue_register.IssueRegister`.
     flush, count, address, data, valid, index, last, word, next_word
         As of `Fetch`.
     """
@@ -122,7 +122,7 @@ class PacedFetch(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.fetch = fetch = Fetch(**self._sizes)
-        m.submodules.pace = pace = Front(width=1)
+        m.submodules.pace = pace = IssueRegister(width=1)
         for name, member in self._shared.items():
             inner, outer = getattr(fetch, name), getattr(self, name)
             m.d.comb += inner.eq(outer) if member.flow == In else outer.eq(inner)

@@ -40,7 +40,7 @@ COUNTS = Control.ROW_COUNT, Control.NODE_COUNT, Control.RUN
 WRITABLE = [register for register in Control if register not in READ_ONLY]
 
 
-def handed(m, ram, name: str, host, by_host: dict, own: dict):
+def registered_ports(m, ram, name: str, host, by_host: dict, own: dict):
     """The ports of a memory from registers: what the host wants while nothing runs, and the machine's own. A port that
     only one of them needs is that one's in any case."""
     for port in own | by_host:

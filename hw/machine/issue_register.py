@@ -8,7 +8,7 @@ LATENCY = 1
 """Cycles from an entry behind the front to it in front, and from a reason to go to going."""
 
 
-class Front(wiring.Component):
+class IssueRegister(wiring.Component):
     """A register between a `hw.machine.fetch.Fetch` and what its entries start.
 
     What makes an entry ready is compared while it still stands behind the front, or again in every cycle in which it
@@ -29,7 +29,7 @@ class Front(wiring.Component):
     """
 
     def __init__(self, *, width: int):
-        self.kind = f"front_{width}"
+        self.kind = f"issue_register_{width}"
         super().__init__(
             {
                 "flush": In(1),

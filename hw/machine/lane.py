@@ -9,8 +9,8 @@ from golden.numbers.graph import AXES
 from hw.blocks.memory import READ_LATENCY, BlockRam, LutRam
 from hw.machine.accumulator import ANNOUNCED, WRITTEN, Accumulator
 from hw.machine.edge import EdgeDatapath, EdgeProcessor
-from hw.machine.host_port import CHOICE, HANDOVER, MEMORY, handed
-from hw.machine.issue_register import Front
+from hw.machine.host_port import CHOICE, HANDOVER, MEMORY, registered_ports
+from hw.machine.issue_register import IssueRegister
 from hw.parameters import Parameters
 from hw.pipeline.choice import choose
 from hw.pipeline.delay import DelayLines
@@ -93,7 +93,7 @@ class Lane(wiring.Component):
     node_behind : In
         The row of nodes behind the one in front: the sums of the one in front are read.
     row_behind_valid, row_behind_ready, row_ready, node_behind_valid, node_behind_ready, node_ready : In(1)
-        As of `hw.machine.issue_register.Front`.
+        As of `hw.machine.issue_register.IssueRegister`.
     stage_first, stage_last, stage_half, stage_double : In(1)
         The Runge-Kutta stage of the edge that was in front `STAGED` cycles before.
     velocity_shift : In
@@ -150,7 +150,7 @@ class Lane(wiring.Component):
         """``_issued``: what is taken from the edge in front, by name."""
         fronts = {}
         for name, behind in (("row", Cat(self.edge_behind, self.row_behind)), ("node", self.node_behind)):
-            self._m.submodules[f"{name}_front"] = fronts[name] = front = Front(width=len(behind))
+            self._m.submodules[f"{name}_front"] = fronts[name] = front = IssueRegister(width=len(behind))
             self._m.d.comb += [front.flush.eq(self.flush), front.behind.eq(behind)]
             for port in ("behind_valid", "behind_ready", "ready"):
                 self._m.d.comb += getattr(front, port).eq(getattr(self, f"{name}_{port}"))
@@ -245,7 +245,7 @@ class Lane(wiring.Component):
             if word in ("length", "ratio"):
                 by_host["address"] = index
                 self._m.d.comb += getattr(self, f"host_{word}").eq(ram.data)
-            handed(self._m, ram, f"edge_{word}", host, by_host, own)
+            registered_ports(self._m, ram, f"edge_{word}", host, by_host, own)
 
     def _material(self):
         """A small memory for each coefficient, read in the cycle before it is needed."""

@@ -9,7 +9,7 @@ from hw.machine.core import datapaths, row_latency
 from hw.machine.entry_memory import LATENCY as LISTED
 from hw.machine.host_port import HANDOVER
 from hw.machine.host_port import LATENCY as HOST_LATENCY
-from hw.machine.issue_register import LATENCY as FRONT_LATENCY
+from hw.machine.issue_register import LATENCY as ISSUE_LATENCY
 from hw.machine.lane import COPIED, FETCHED, NEXT, written
 from hw.machine.lane import latency as sums_latency
 from hw.parameters import Parameters
@@ -28,9 +28,9 @@ class Latencies:
     @classmethod
     def of(cls, p: Parameters) -> "Latencies":
         edge, node = datapaths(p)
-        rows, nodes = (HANDOVER + fetch.latency(data) + FRONT_LATENCY + 1 for data in (row_latency(p), LISTED))
-        nodes += p.turns > 1  # the first of them doesn't go on its way to the front
-        return cls(sums_latency(edge) + FRONT_LATENCY, node.latency + COPIED + 1 + FRONT_LATENCY, rows, nodes)
+        rows, nodes = (HANDOVER + fetch.latency(data) + ISSUE_LATENCY + 1 for data in (row_latency(p), LISTED))
+        nodes += p.cycles_per_node > 1  # the first of them doesn't go on its way to the front
+        return cls(sums_latency(edge) + ISSUE_LATENCY, node.latency + COPIED + 1 + ISSUE_LATENCY, rows, nodes)
 
 
 def latencies(p: Parameters) -> list[tuple[str, str, int]]:

@@ -21,7 +21,7 @@ class Sequencer(wiring.Component):
     Parameters
     ----------
     step_bits : int
-    turns : int
+    cycles_per_node : int
         Cycles from a node to the next, at least.
 
     Members
@@ -33,7 +33,7 @@ class Sequencer(wiring.Component):
     busy : Out(1), steps_done : Out
         The steps are counted a cycle late.
     row_valid, row_goes, row_last, row_nodes : In(1)
-        A row stands in front (`hw.machine.issue_register.Front`); it goes in this cycle; it is its list's last; all its
+        A row stands in its `hw.machine.issue_register`; it goes in this cycle; it is its list's last; all its
         nodes have been updated in the stage that the updates are in.
     row_behind_nodes : In(1)
         The same of the row behind the front.
@@ -55,8 +55,8 @@ class Sequencer(wiring.Component):
         has gone.
     """
 
-    def __init__(self, *, step_bits: int = 32, turns: int = 1):
-        self._turns = turns
+    def __init__(self, *, step_bits: int = 32, cycles_per_node: int = 1):
+        self._cycles_per_node = cycles_per_node
         super().__init__(
             {
                 "start": In(1),
@@ -110,7 +110,7 @@ class Sequencer(wiring.Component):
         near = self.node_behind_rows & ~self.node_behind_last
         node_ready = ~nodes_over & ((sum_lead != 0) | self.node_rows & ~self.node_last)
         node_behind_ready = ~nodes_end & ((sum_lead > node_turns) | (sum_lead == node_turns) & near)
-        if self._turns > 1:  # it has its turns to wait for
+        if self._cycles_per_node > 1:  # it has its turns to wait for
             node_ready, node_behind_ready = node_ready & self._rested(m), Const(0)
         m.d.comb += [
             self.row_ready.eq(~rows_over & ((row_lead == 0) | (row_lead == 1) & self.row_nodes)),
@@ -170,9 +170,9 @@ class Sequencer(wiring.Component):
 
     def _rested(self, m):
         """Whether a node that is ready now goes when the one before has had its turns."""
-        rest = Signal(range(self._turns))
+        rest = Signal(range(self._cycles_per_node))
         with m.If(self.node_goes):
-            m.d.sync += rest.eq(self._turns - 2)
+            m.d.sync += rest.eq(self._cycles_per_node - 2)
         with m.Elif(rest != 0):
             m.d.sync += rest.eq(rest - 1)
         return rest == 0

@@ -13,9 +13,9 @@ from golden.datapath.rk4 import RK4
 from golden.numbers.graph import AXES, IN_TURN
 from hw.blocks.memory import READ_LATENCY, BlockRam
 from hw.machine.accumulator import READ
-from hw.machine.axis_serializer import Turns
+from hw.machine.axis_serializer import AxisSerializer
 from hw.machine.edge import fault_names
-from hw.machine.host_port import HANDOVER, handed
+from hw.machine.host_port import HANDOVER, registered_ports
 from hw.machine.lane import NODE_WORDS
 from hw.parameters import Parameters
 from hw.pipeline.cost import Cost
@@ -36,12 +36,12 @@ class NodeDatapath:
     """`golden.datapath.graphs.node_graph` with its schedule.
 
     Only the sums of forces come with the node, two for each lane; a node's own words are read when they are needed.
-    With ``turns``, as many as a node has axes, these come one after the other.
+    With ``cycles_per_node``, as many as a node has axes, these come one after the other.
     """
 
-    def __init__(self, formats: Formats, lanes: int, cost: Cost, turns: int = 1):
-        self.formats, self.cost, self.banks, self.turns = formats, cost, 2 * lanes, turns
-        self.axes = AXES if turns == 1 else IN_TURN
+    def __init__(self, formats: Formats, lanes: int, cost: Cost, cycles_per_node: int = 1):
+        self.formats, self.cost, self.banks, self.cycles_per_node = formats, cost, 2 * lanes, cycles_per_node
+        self.axes = AXES if cycles_per_node == 1 else IN_TURN
 
     @cached_property
     def graph(self):
@@ -67,7 +67,7 @@ class NodeDatapath:
     @property
     def latency(self) -> int:
         """Cycles from the issue of a node to its new state."""
-        return GATHERED + self.turns - 1 + self.done
+        return GATHERED + self.cycles_per_node - 1 + self.done
 
 
 class NodeUpdater(wiring.Component):
@@ -75,7 +75,7 @@ class NodeUpdater(wiring.Component):
     nodes.
 
     Latency: a node's new state is on ``update_*`` ``datapath.latency`` cycles after it was issued. Throughput one node
-    in ``datapath.turns`` cycles.
+    in ``datapath.cycles_per_node`` cycles.
 
     Members
     -------
@@ -116,7 +116,7 @@ class NodeUpdater(wiring.Component):
                 "fault": Out(len(self.datapath.faults)),
                 "host": In(1),
                 "host_index": In(parameters.index_bits),
-                **({"host_axis": In(range(len(AXES)))} if datapath.turns > 1 else {}),
+                **({"host_axis": In(range(len(AXES)))} if datapath.cycles_per_node > 1 else {}),
                 "host_data": In(fmt.state),
                 "host_write_state": In(len(NODE_WORDS)),
                 "host_write_load": In(len(AXES)),
@@ -134,7 +134,7 @@ class NodeUpdater(wiring.Component):
         inputs = {"velocity_shift": self._lines.later(self.velocity_shift, 1)}
         for name, bit in self._stage.items():
             inputs[name] = self._later(bit, self.schedule.arrival[name])
-        if self.datapath.turns > 1:
+        if self.datapath.cycles_per_node > 1:
             inputs["first_turn"] = self._later(self._first, 0)
         self._pulls(inputs)
         memories = self._memories(inputs)
@@ -151,10 +151,10 @@ class NodeUpdater(wiring.Component):
         stage = {name: getattr(self, name) for name in map("stage_{}".format, RK4.stage(0))}
         self._valid, self._row, self._stage, self._gathered = self.valid, self.row, stage, GATHERED
         self._last, self._place, self._depth = self.valid, self.row, self.parameters.node_rows
-        if self.datapath.turns == 1:
+        if self.datapath.cycles_per_node == 1:
             return
         node = Cat(self.row, *stage.values())
-        self._m.submodules.turns = turns = Turns(width=len(node))
+        self._m.submodules.turns = turns = AxisSerializer(width=len(node))
         self._m.d.comb += [turns.valid.eq(self.valid), turns.i.eq(node)]
         self._valid, self._first, self._last = turns.turn_valid, turns.first, turns.last
         self._gathered, self._depth = GATHERED - 1, len(AXES) << len(self.row)
@@ -167,7 +167,7 @@ class NodeUpdater(wiring.Component):
 
     def _pulls(self, inputs):
         """The sums on a node, side by side or one after the other."""
-        m, turns = self._m, self.datapath.turns
+        m, turns = self._m, self.datapath.cycles_per_node
         others = Signal.like(self.mask, name="others")
         m.d.comb += others.eq(~self.mask)
         others = self._lines.later(others, READ)
@@ -195,7 +195,7 @@ class NodeUpdater(wiring.Component):
     def _host_place(self):
         """Where the host's word is in the memories of vectors."""
         index = self._host("index")
-        return index if self.datapath.turns == 1 else Cat(index[: len(self.row)], self._host("axis"))
+        return index if self.datapath.cycles_per_node == 1 else Cat(index[: len(self.row)], self._host("axis"))
 
     def _memory(self, name: str, width: int, arrival: int, *, vector: bool = True) -> BlockRam:
         """A word per node, or of a vector per item, read for ``arrival``, or for the host."""
@@ -203,7 +203,7 @@ class NodeUpdater(wiring.Component):
         self._m.submodules[name] = ram
         address = self._later(self._place if vector else self._row, arrival - READ_LATENCY - 1 - self._early(arrival))
         host, by_host = self._host(""), self._host_place() if vector else self._host("index")
-        handed(self._m, ram, name, host, {"address": by_host}, {"address": address})
+        registered_ports(self._m, ram, name, host, {"address": by_host}, {"address": address})
         return ram
 
     def _written(self, name: str, ram: BlockRam, *, vector: bool = True, **writers):
@@ -215,7 +215,7 @@ class NodeUpdater(wiring.Component):
         ports = {"by_host": {}, "own": {}}
         for who, (strobe, word) in writers.items():
             ports[who] = {"write": strobe, "write_address": places[who], "write_data": word}
-        handed(self._m, ram, name, self._host(""), **ports)
+        registered_ports(self._m, ram, name, self._host(""), **ports)
 
     def _memories(self, inputs):
         memories, arrival, axes = {}, self.schedule.arrival, self.datapath.axes
@@ -261,7 +261,7 @@ class NodeUpdater(wiring.Component):
         return self._gathered + arrival - READ_LATENCY - 1 > 0
 
     def _write_back(self, pipe, memories):
-        m, done, axes, turns = self._m, self.datapath.done, self.datapath.axes, self.datapath.turns
+        m, done, axes, turns = self._m, self.datapath.done, self.datapath.axes, self.datapath.cycles_per_node
         valid, last = self._later(self._valid, done), self._later(self._stage["stage_last"], done)
         strobes = dict(zip(NODE_WORDS, self._host("write_state"), strict=True))
         for quantity, result in RESULTS.items():

@@ -11,7 +11,7 @@ from golden.datapath.image import Image
 from golden.datapath.rk4 import RK4
 from golden.physics.scene import Scene
 from golden.support.errors import InputError
-from hw.machine.issue_register import LATENCY as FRONT_LATENCY
+from hw.machine.issue_register import LATENCY as ISSUE_LATENCY
 from hw.machine.latency import Latencies
 from hw.parameters import Parameters
 from sim.encode import limits
@@ -34,22 +34,22 @@ class Wavefront:
         program = Program(image, parameters)
         self.latencies = latencies or Latencies.of(parameters)
         self.rows, self.edges, self._lanes = program.rows, len(image.edges), parameters.lanes
-        self._turns = parameters.turns
+        self._pace = parameters.cycles_per_node
         self._highest, self._need = program.highest(), program.need()
         self._need[-1] = self.rows  # the last nodes close the stage
 
     def run(self, steps: int) -> np.ndarray:
         """(steps,) the first cycle after each step of a run; the last is what the circuit's counter says."""
         updated = np.full(len(self._need), 0)
-        last_row, last_node = self.latencies.rows - 1, self.latencies.nodes - self._turns
+        last_row, last_node = self.latencies.rows - 1, self.latencies.nodes - self._pace
         ends = []
         for stage in range(steps * RK4.stages):
             rows = in_turn(updated[self._highest] if stage else np.zeros(self.rows, np.int64), last_row + 1)
             summed = np.concatenate([[0], rows + self.latencies.edge])
-            nodes = in_turn(summed[self._need], last_node + self._turns, self._turns)
+            nodes = in_turn(summed[self._need], last_node + self._pace, self._pace)
             updated = nodes + self.latencies.node
             last_row, last_node = rows[-1], nodes[-1]
-            ends += [updated[-1] - FRONT_LATENCY] if stage % RK4.stages == RK4.stages - 1 else []
+            ends += [updated[-1] - ISSUE_LATENCY] if stage % RK4.stages == RK4.stages - 1 else []
         return np.array(ends)
 
     def per_step(self) -> int:
