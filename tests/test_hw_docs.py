@@ -9,11 +9,17 @@ from environment import ROOT
 from hw import __main__ as cli
 from hw.docs import command
 from hw.docs.pages import PAGES, updated
+from hw.docs.pictures import PICTURES
 from hw.docs.tables import TABLES
 from hw.parameters import Parameters
 
 CIRCUIT = (ROOT / "docs" / "circuit.md").read_text()
 STALE = CIRCUIT.replace("| position | Q3.33 |", "| position | Q3.32 |")
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_pictures_are_fresh(name):
+    assert (ROOT / name).read_text() == PICTURES[name](Parameters()), "run `python -m hw docs`"
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -43,6 +49,7 @@ def test_the_command_brings_stale_pages_up_to_date(tmp_path, monkeypatch, capsys
     assert cli.main(["docs"]) == 0
     said = capsys.readouterr().out.splitlines()
     assert "docs/circuit.md: written anew" in said and "README.md: up to date" in said
+    assert all((tmp_path / name).read_text() == (ROOT / name).read_text() for name in PICTURES)
     assert (tmp_path / "docs" / "circuit.md").read_text() == CIRCUIT
     assert cli.main(["docs"]) == 0
     assert "written anew" not in capsys.readouterr().out

@@ -4,6 +4,8 @@ from pathlib import Path
 
 from golden.support.paths import ROOT
 from hw.docs.pages import PAGES, updated
+from hw.docs.pictures import PICTURES
+from hw.parameters import Parameters
 
 
 def add_options(command) -> None:
@@ -14,6 +16,8 @@ def run(args) -> int:
     for name, tables in PAGES.items():
         path = ROOT / name
         refresh(path, updated(path.read_text(encoding="utf-8"), tables))
+    for name, draw in PICTURES.items():
+        refresh(ROOT / name, draw(Parameters()))
     return 0
 
 
