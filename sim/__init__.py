@@ -1,1 +1,1 @@
-"""Co-simulation: scenes on the float64 model, the integer model and the simulated circuit, compared."""
+"""Scenes on float64, in the circuit's integers and in the circuit itself, compared, drawn and measured."""

@@ -1,81 +1,46 @@
-"""One `run(scene, backend)` for every way there is to compute a scene."""
+"""One `run(scene, backend)` for every way to compute a scene."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
-from golden.physics import model
 from golden.physics.scene import Scene
 from golden.physics.trajectory import Trajectory
 from golden.support.errors import InputError
-from sim.backends import machines
-from sim.backends import waves as waveforms
+from sim.backends.backend import Backend, IntegerBackend
+from sim.backends.fixed import NATIVE
+from sim.backends.machine import ClockedMachine, Machine
+from sim.backends.registry import BACKENDS, owners
+from sim.backends.rtl import LANES, UPDATES
 from sim.encode import limits
-from sim.encode.encode import Loaded
+from sim.encode.encode import EncodedScene
 from sim.encode.switch import switch
-from sim.encode.units import Units
+from sim.results.result import Raw, Result
 
-COMPARED = "float", "fixed", "rtl"
-BACKENDS = *COMPARED, "board"
-LANES, UPDATES = 2, 1
-CHECKS = 10  # steps of a run that the NumPy model computes again, if there are as many frames
+CHECKS = 10  # steps of a run that a witness computes again, if there are as many frames
 REPORT_EVERY = 200  # steps between two calls of `progress`
-
-
-@dataclass(frozen=True, eq=False)
-class Raw:
-    """The circuit's own integers at F frames, nodes and edges in the scene's order: what two runs must agree on."""
-
-    x: np.ndarray  # (F, N, 3) int64, golden.datapath.formats position
-    v: np.ndarray  # (F, N, 3) int64, velocity
-    ratio: np.ndarray  # (F, E) int64, ratio
-
-    def same(self, other: Raw) -> bool:
-        """Whether every bit of every frame is the same."""
-        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in ("x", "v", "ratio"))
-
-
-@dataclass(frozen=True, eq=False)
-class Result:
-    """What a run gives. ``raw``, ``units`` and ``faults`` belong to the integer backends, ``cycles``, ``lanes``
-    and ``updates`` to the circuit.
-
-    A fault counts the saturations of a quantity, by the quantity's name; the circuit only tells 1 for "at least one".
-    """
-
-    backend: str
-    trajectory: Trajectory
-    seconds: float
-    raw: Raw | None = None
-    units: Units | None = None
-    faults: dict[str, int] = field(default_factory=dict)
-    cycles: int | None = None
-    lanes: int | None = None
-    updates: int | None = None
-
-    @property
-    def saturations(self) -> int:
-        return sum(self.faults.values())
+State = tuple[np.ndarray, ...]
+"""x, v, ratio and force of a machine."""
 
 
 def run(
     scene: Scene,
-    backend: str,
+    backend: str | Backend,
     *,
     lanes: int = LANES,
     updates: int = UPDATES,
     edge_order: np.ndarray | None = None,
-    engine: str = "native",
+    engine: str = NATIVE,
     waves: Path | None = None,
     link=None,
     progress: Callable[[int], object] | None = None,
 ) -> Result:
-    """Run a scene on float64, on the integer model or on the simulated circuit, and keep its frames.
+    """Run a scene on a backend and keep its frames.
 
     The integer backends give the force of the last Runge-Kutta stage before a frame, as the circuit does: a reaction
     is that of a state next to the frame's, and frame 0, before any step, has none (NaN on held nodes).
@@ -83,19 +48,19 @@ def run(
     Parameters
     ----------
     backend
-        "float" (`golden.physics.model`), "fixed" (the integer model), "rtl" (the circuit's Verilog under Verilator) or
-        "board" (a circuit behind a link).
+        The name of one in `sim.backends.registry.BACKENDS`, which takes those of the settings ``lanes``, ``updates``,
+        ``engine``, ``waves`` and ``link`` that it has; or a backend with its settings.
     lanes, updates
-        Edge processors and node updaters of the circuit; "rtl" only.
+        Edge processors and node updaters of the simulated circuit.
     edge_order
         (E,) permutation in which the integer backends work through the edges; the result is the same for any.
     engine
-        What computes "fixed": "native", compiled, with steps of every phase and at least `CHECKS` in all computed
-        again by the NumPy model; or "numpy", the NumPy model alone.
+        What computes the integer model: "native", compiled, with steps of every phase and at least `CHECKS` in all
+        computed again by the NumPy model; or "numpy", the NumPy model alone.
     waves
-        File to which the circuit's waveforms are written (.fst or .vcd); "rtl" only.
+        File to which the simulated circuit's waveforms are written (.fst or .vcd).
     link
-        The `sim.backends.link.board.Board`; "board" only. It is closed in any case.
+        The `sim.backends.link.board.Board` to a circuit; closed in any case.
     progress
         Called with the number of steps done, every 200 steps and at every frame.
 
@@ -106,70 +71,62 @@ def run(
     InternalError
         If the compiled integer model disagrees with the NumPy model.
     """
-    _check(scene, backend, edge_order, engine, waves, link)
-    circuit = backend in ("rtl", "board")
-    parameters = link.parameters if link else machines.parameters(lanes, updates) if circuit else None
-    began = perf_counter()
-    if backend == "float":
-        trajectory = model.simulate(scene, progress)
-        return Result("float", trajectory, perf_counter() - began)
-
-    loaded = limits.load(scene, edge_order)
-    with (
-        machines.board(loaded.image, link)
-        if link
-        else machines.circuit(loaded.image, parameters, waves)
-        if circuit
-        else machines.integer_model(loaded.image, engine)
-    ) as machine:
-        for held in limits.later(loaded) if circuit else ():
-            machines.check_room(held.image, parameters)
-        witness = machines.Witness(loaded.image) if not circuit and engine != "numpy" else None
-        frames = _frames(loaded, machine, witness, progress)
-        raw = _raw(loaded, frames)
+    if not isinstance(backend, Backend):
+        backend = _configured(backend, lanes=lanes, updates=updates, engine=engine, waves=waves, link=link)
+    with ExitStack() as stack:
+        if link is not None:
+            stack.callback(link.close)
+        backend.check()
+        _check_order(edge_order, len(scene.mesh.edges))
+        began = perf_counter()
+        if not backend.integers:
+            machine = stack.enter_context(backend.open(scene))
+            return Result(backend.name, machine.simulate(progress), perf_counter() - began)
+        encoded = limits.encode(scene, edge_order)
+        machine = stack.enter_context(backend.open(encoded))
+        frames = _frames(encoded, backend, machine, progress)
+        counted = {}
+        if isinstance(machine, ClockedMachine):
+            sizes = machine.parameters
+            counted = {"cycles": int(machine.cycles), "lanes": sizes.lanes, "updates": sizes.updates}
         return Result(
-            backend,
-            _trajectory(loaded, frames),
+            backend.name,
+            _trajectory(encoded, frames),
             perf_counter() - began,
-            raw,
-            loaded.units,
+            _raw(encoded, frames),
+            encoded.units,
             faults={name: count for name, count in sorted(machine.faults.items()) if count},
-            cycles=int(machine.cycles) if circuit else None,
-            lanes=parameters.lanes if circuit else None,
-            updates=parameters.updates if circuit else None,
+            **counted,
         )
 
 
-def _check(scene, backend, edge_order, engine, waves, link):
-    if backend not in BACKENDS:
-        raise InputError(f"backend must be one of {', '.join(BACKENDS)}, not {backend!r}")
-    if engine not in machines.ENGINES:
-        raise InputError(f"engine must be one of {', '.join(machines.ENGINES)}, not {engine!r}")
-    if (link is not None) != (backend == "board"):
-        raise InputError(
-            f"link must go with the backend board, not {backend}"
-            if link
-            else "link must be given for the backend board"
-        )
-    if waves is not None and backend != "rtl":
-        raise InputError(f"waves must go with the backend rtl, not {backend}: only the circuit has signals")
-    if waves is not None:
-        waveforms.check(waves)
-    edges = len(scene.mesh.edges)
+def _configured(name: str, **settings) -> Backend:
+    """Return the backend of a name, with those of the settings that it has; None, a setting's absence, fits any."""
+    if name not in BACKENDS:
+        raise InputError(f"backend must be one of {', '.join(BACKENDS)}, not {name!r}")
+    kind = BACKENDS[name]
+    own = kind.settings()
+    for setting in ("waves", "link"):  # the others have a default value, which is no wish
+        if settings[setting] is not None and setting not in own:
+            raise InputError(f"{setting} must go with the backend {owners(setting)}, not {name}")
+    return kind(**{setting: value for setting, value in settings.items() if setting in own})
+
+
+def _check_order(edge_order: np.ndarray | None, edges: int) -> None:
     if edge_order is not None and not np.array_equal(np.sort(edge_order), np.arange(edges)):
         raise InputError(f"edge_order must be a permutation of 0 to {edges - 1}")
 
 
-def _frames(loaded: Loaded, machine, witness, progress) -> list[tuple[np.ndarray, ...]]:
-    """(x, v, ratio, force) of the machine at every frame of the scene, in the circuit's order."""
-    scene, kept, done = loaded.scene, [], 0
+def _frames(encoded: EncodedScene, backend: IntegerBackend, machine: Machine, progress) -> list[State]:
+    """Run all phases; return the machine's state at every frame of the scene, in the circuit's order."""
+    scene, kept, done = encoded.scene, [], 0
+    witness = backend.witness(encoded.image)
     wanted, checked = set(scene.frames.tolist()), checked_steps(scene) if witness else set()
     for phase in scene.phases:
         if phase.materials:
-            loaded = switch(loaded, machine, phase.materials)
-            if witness:
-                witness = machines.Witness(loaded.image)
-        machine.restart(loaded.start(phase, machine.v))
+            encoded = switch(encoded, machine, phase.materials)
+            witness = backend.witness(encoded.image)
+        machine.restart(encoded.start(phase, machine.v))
         if done == 0:
             kept.append(_state(machine))
         for stop in _stops(scene, done, done + phase.steps):
@@ -186,40 +143,41 @@ def _frames(loaded: Loaded, machine, witness, progress) -> list[tuple[np.ndarray
     return kept
 
 
-def _state(machine) -> tuple[np.ndarray, ...]:
+def _state(machine: Machine) -> State:
     return tuple(np.array(part) for part in (machine.x, machine.v, machine.ratio, machine.force))
 
 
 def _stops(scene: Scene, start: int, end: int) -> list[int]:
-    """Steps after which a run pauses: frames, and every so many for the sake of `progress`."""
+    """Return the steps after which a run pauses: frames, and every so many to report progress."""
     stops = np.union1d(scene.frames, np.arange(0, end, REPORT_EVERY))
     return stops[(start < stops) & (stops <= end)].tolist()
 
 
 def checked_steps(scene: Scene) -> set[int]:
-    """Frames to which the last step is computed again: the ends of the phases and `CHECKS` more, evenly spread."""
+    """Return the frames before which a witness checks a step: the ends of the phases and `CHECKS` more, evenly
+    spread."""
     frames = scene.frames[1:]
     every = max(1, len(frames) // CHECKS)
     return {*frames[every - 1 :: every].tolist(), *np.cumsum([p.steps for p in scene.phases]).tolist()}
 
 
-def _raw(loaded: Loaded, frames) -> Raw:
+def _raw(encoded: EncodedScene, frames: list[State]) -> Raw:
     def ordered(part, order):
         values = np.stack([frame[part] for frame in frames])
         result = np.empty_like(values)
         result[:, order] = values
         return result
 
-    return Raw(ordered(0, loaded.node_order), ordered(1, loaded.node_order), ordered(2, loaded.edge_order))
+    return Raw(ordered(0, encoded.node_order), ordered(1, encoded.node_order), ordered(2, encoded.edge_order))
 
 
-def _trajectory(loaded: Loaded, frames) -> Trajectory:
-    scene = loaded.scene
+def _trajectory(encoded: EncodedScene, frames: list[State]) -> Trajectory:
+    scene = encoded.scene
     x, v, a, force = map(
         np.array,
         zip(
             *(
-                (loaded.positions(x), loaded.velocities(v), loaded.ratios(ratio), loaded.forces(force))
+                (encoded.positions(x), encoded.velocities(v), encoded.ratios(ratio), encoded.forces(force))
                 for x, v, ratio, force in frames
             ),
             strict=True,

@@ -13,7 +13,7 @@ from golden.datapath.machine import Machine
 from hw.machine.host_port import LATENCY
 from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region, join
 from hw.parameters import Parameters
-from sim.encode.encode import load
+from sim.encode.encode import encode
 from sim.encode.program import Program
 
 PARAMETERS = Parameters(lanes=2, nodes=16, edges=64, materials=2, tables=1)
@@ -126,7 +126,7 @@ class Object:
 
     def __init__(self, name="small"):
         nodes, material = OBJECTS[name]
-        loaded = load(pressed(irregular(nodes, np.random.default_rng(SEED)), MATERIALS[material], 30))
+        loaded = encode(pressed(irregular(nodes, np.random.default_rng(SEED)), MATERIALS[material], 30))
         self.image, self.model = loaded.image, Machine(loaded.image)
         self.program, self._tables = Program(self.image, PARAMETERS), loaded.scene.force_dependent
 

@@ -16,7 +16,7 @@ from hw.link.receive import BYTE_CYCLES
 from hw.machine.core import Core
 from hw.map.memory_map import MAGIC
 from hw.parameters import Parameters
-from sim.backends.machines import BUILD
+from sim.backends.rtl import BUILD
 from sim.backends.verilated import library, opened
 
 SHIM = Path(__file__).with_name("linked.cpp")

@@ -8,8 +8,8 @@ from integer_objects import MATERIALS, irregular, pressed
 from golden.mesh.mesh import Mesh
 from hw.parameters import Parameters
 from sim.backends.circuit import CircuitMachine
-from sim.backends.machines import BUILD
-from sim.backends.rtl import Circuit
+from sim.backends.rtl import BUILD
+from sim.backends.simulated_circuit import SimulatedCircuit
 from sim.encode.order import ranks
 
 STATE = "x", "v", "force", "ratio"
@@ -23,7 +23,7 @@ def circuit(lanes, updates=1, axes=3):
 
 def rtl_machine(image, *, parameters, folder=BUILD, waves=None) -> CircuitMachine:
     """The simulated circuit loaded with an image."""
-    return CircuitMachine(image, Circuit(parameters, folder, waves))
+    return CircuitMachine(image, SimulatedCircuit(parameters, folder, waves))
 
 
 def run(loaded, machine):

@@ -8,7 +8,7 @@ import numpy as np
 from hw.parameters import Parameters
 from sim.backends.link import serve
 from sim.backends.link.served import BAUD, CLOCK_HZ, SerialCircuit
-from sim.backends.machines import BUILD
+from sim.backends.rtl import BUILD
 
 SMALL = Parameters(lanes=1, nodes=32, edges=64, materials=2, tables=1)
 

@@ -1,6 +1,7 @@
 """Small scenes for the tests of co-simulation, and a stand-in for the simulated circuit."""
 
 from contextlib import contextmanager
+from typing import ClassVar
 
 import golden_objects as objects
 import numpy as np
@@ -8,6 +9,8 @@ import numpy as np
 from golden.datapath.machine import Machine
 from golden.mesh import mesh
 from golden.physics import materials
+from hw.parameters import Parameters
+from sim.backends.rtl import RtlBackend
 
 DT = 2e-4
 MATERIALS = {
@@ -39,24 +42,25 @@ def block(material="rheological", dim=2, steps=(40, 20, 30), every=6, **kwargs):
 class Standin(Machine):
     """The integer model in the circuit's place."""
 
-    cycles = 0
+    def __init__(self, image, parameters: Parameters | None = None):
+        super().__init__(image)
+        self.parameters, self.cycles = parameters, 0
 
     def step(self, steps: int = 1):
         super().step(steps)
         self.cycles += 100 * steps
 
-    def close(self):
-        pass
-
 
 def in_place_of_the_circuit(machine=Standin):
-    """Something to put in place of `sim.backends.machines.circuit`; it remembers what it was asked for in ``asked``."""
-    asked = []
+    """A backend to register in place of `sim.backends.rtl.RtlBackend`; it remembers what it was asked for in
+    ``asked``."""
 
-    @contextmanager
-    def circuit(image, parameters, waves):
-        asked.append((parameters.lanes, parameters.updates, waves))
-        yield machine(image)
+    class StandinBackend(RtlBackend):
+        asked: ClassVar[list] = []
 
-    circuit.asked = asked
-    return circuit
+        @contextmanager
+        def open(self, encoded):
+            self.asked.append((self.lanes, self.updates, self.waves))
+            yield machine(encoded.image, self.parameters)
+
+    return StandinBackend

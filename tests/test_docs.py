@@ -15,7 +15,7 @@ from golden.scene import load as scene
 from hw.machine.core import datapaths
 from hw.machine.latency import latencies
 from hw.parameters import Parameters
-from sim.results.compare import BOUND, power
+from sim.results.comparison import BOUND, power
 from sim.results.cycles import cycles_per_step
 
 PARAMETERS = Parameters()

@@ -9,7 +9,7 @@ from golden.datapath.formats import Formats, table
 from golden.datapath.machine import Machine
 from golden.datapath.tables import inverse_table
 from golden.physics.model import simulate
-from sim.encode.encode import load
+from sim.encode.encode import encode
 
 FMT = Formats()
 WORDS = [(12, 24), (14, 32), (16, 32), (18, 36), (20, 40), (22, 44)]
@@ -81,7 +81,7 @@ def test_accuracy_improves_with_the_bits_of_operands(rng):
     exact = simulate(scene).x[-1]
     errors = []
     for operand, state in WORDS:
-        loaded = load(scene, Formats(operand, state))
+        loaded = encode(scene, Formats(operand, state))
         machine = Machine(loaded.image)
         for phase in scene.phases:
             machine.restart(loaded.start(phase, machine.v))

@@ -4,7 +4,7 @@ import numpy as np
 from integer_objects import MATERIALS, irregular, pressed, random_image
 
 from golden.datapath.machine import Machine, accumulate
-from sim.encode.encode import load
+from sim.encode.encode import encode
 
 STATE = "x", "v", "ratio", "force"
 
@@ -48,7 +48,7 @@ def test_a_run_in_pieces_is_the_same_run(rng):
 def test_held_nodes_move_as_prescribed(rng):
     """Their velocity is kept to the bit, and they go as far as it says: a displacement is rounded once a step."""
     scene = pressed(irregular((3, 3), rng), MATERIALS["rheological"], 60)
-    loaded = load(scene)
+    loaded = encode(scene)
     machine, press = Machine(loaded.image), scene.phases[0]
     velocity = loaded.start(press, machine.v)
     machine.restart(velocity)
@@ -66,7 +66,7 @@ def test_held_nodes_move_as_prescribed(rng):
 
 def test_the_host_can_change_loads_between_steps(rng):
     scene = pressed(irregular((3, 3), rng), MATERIALS["rheological"], 60)
-    loaded = load(scene)
+    loaded = encode(scene)
     machine = Machine(loaded.image)
     machine.restart(loaded.start(scene.phases[2], np.zeros_like(machine.v)))
     machine.step()

@@ -13,7 +13,7 @@ from integer_objects import random_image
 from rtl_objects import rtl_machine
 from test_hw_blocks_multiplier import SHAPES, operands
 
-import sim.backends.rtl
+import sim.backends.simulated_circuit
 from hw.blocks.memory import READ_LATENCY, BlockRam
 from hw.blocks.multiplier import Multiplier
 from hw.blocks.shifter import ShiftStage
@@ -23,8 +23,8 @@ from hw.families import FAMILIES, MODELS
 from hw.families.ecp5.blocks import BLOCKS
 from hw.machine.core import Core
 from hw.parameters import Parameters
-from sim.backends.machines import BUILD
 from sim.backends.native import NativeMachine
+from sim.backends.rtl import BUILD
 
 SMALL = Parameters(lanes=2, nodes=16, edges=20, materials=3, tables=1)
 CYCLES = 20_000
@@ -194,7 +194,7 @@ def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypa
     image = random_image(rng)
     lane, top, core = emitted
     models = MODELS["ecp5"].read_text()
-    monkeypatch.setattr(sim.backends.rtl, "emit", lambda parameters: (top + lane + models, core))
+    monkeypatch.setattr(sim.backends.simulated_circuit, "emit", lambda parameters: (top + lane + models, core))
     circuit = rtl_machine(image, parameters=core.parameters, folder=BUILD)
     model = NativeMachine(image)
     for steps in (1, 3, 50):

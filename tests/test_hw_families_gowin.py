@@ -14,7 +14,7 @@ from hw.emit.verilog import TOP, convert, modules
 from hw.families import FAMILIES
 from hw.machine.core import Core
 from hw.parameters import Parameters
-from sim.backends.machines import BUILD
+from sim.backends.rtl import BUILD
 
 SMALL = Parameters(lanes=2, nodes=16, edges=20, materials=3, tables=1)
 CYCLES = 20_000

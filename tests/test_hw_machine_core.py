@@ -12,7 +12,7 @@ from hw.machine.lane import latency
 from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region, join
 from hw.parameters import Parameters
 from hw.pipeline.cost import Cost
-from sim.encode.encode import load
+from sim.encode.encode import encode
 from sim.encode.program import Program
 
 
@@ -95,7 +95,7 @@ def test_a_pressed_block(lanes, updates, axes, press, hold, rng):
     mesh = irregular((3, 2), rng)
     kinds = MATERIALS["rheological"], MATERIALS["plastic"]
     scene = pressed(mesh, kinds, 9, edge_material=rng.integers(2, size=len(mesh.edges)))
-    loaded = load(scene)
+    loaded = encode(scene)
     image = loaded.image
     image.damper = {name: np.zeros_like(raw) for name, raw in image.damper.items()}  # linear dampers need none
     core, program, machine = circuit(image, lanes, updates=updates, axes=axes)

@@ -15,7 +15,7 @@ from hw.machine.edge import EdgeDatapath
 from hw.pipeline.cost import Cost
 from hw.pipeline.pipe import FAULT_LATENCY
 from sim.backends.edge_bench import EdgeBench
-from sim.backends.machines import BUILD
+from sim.backends.rtl import BUILD
 
 FORMATS = Formats()
 TABLES, BATCH, BATCHES = 4, 50_000, 41

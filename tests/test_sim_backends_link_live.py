@@ -21,7 +21,7 @@ from sim.backends.link.board import Board
 from sim.backends.link.live import Live, line_bytes, most_nodes
 from sim.backends.link.session import Session
 from sim.backends.native import NativeMachine
-from sim.encode.encode import load
+from sim.encode.encode import encode
 from sim.encode.order import ranks
 
 
@@ -30,7 +30,7 @@ def loaded(tmp_path):
     text = scene_text.changed(scene_text.SCENE, "duration = 0.01\n", "duration = 10.0\n")
     text = scene_text.changed(text, "every = 30", "every = 50000")
     text = scene_text.changed(text, "velocity = [0, -0.5]", "velocity = [0, -0.001]")
-    return load(scenes.load(scene_text.written(tmp_path, text)))
+    return encode(scenes.load(scene_text.written(tmp_path, text)))
 
 
 class Named:

@@ -9,7 +9,7 @@ from golden.datapath.formats import Formats
 from golden.datapath.machine import Machine
 from sim.backends.native import NativeMachine, compiled
 from sim.backends.native_source import sources
-from sim.encode.encode import load
+from sim.encode.encode import encode
 
 
 def assert_same(a, b):
@@ -21,7 +21,7 @@ def assert_same(a, b):
 @pytest.mark.parametrize("nodes", [(4, 3), (3, 3, 2)], ids=["2-D", "3-D"])
 @pytest.mark.parametrize("material", MATERIALS)
 def test_every_preset_gives_the_same_bits(material, nodes, rng):
-    loaded = load(pressed(irregular(nodes, rng), MATERIALS[material], 30))
+    loaded = encode(pressed(irregular(nodes, rng), MATERIALS[material], 30))
     machines = Machine(loaded.image), NativeMachine(loaded.image)
     for phase in loaded.scene.phases:
         velocity = loaded.start(phase, machines[0].v)
@@ -66,7 +66,7 @@ def test_the_order_of_edges_changes_nothing(rng):
     scene = pressed(mesh, tuple(MATERIALS.values()), 60, edge_material=rng.integers(5, size=edges))
     results = []
     for order in (None, rng.permutation(edges), rng.permutation(edges)):
-        loaded = load(scene, edge_order=order)
+        loaded = encode(scene, edge_order=order)
         machine = NativeMachine(loaded.image)
         for phase in scene.phases:
             machine.restart(loaded.start(phase, machine.v))

@@ -12,9 +12,9 @@ from golden.support.errors import InputError
 from hw.machine.host_port import LATENCY
 from hw.map.memory_map import MAGIC, Control, Map, Region
 from hw.parameters import Parameters
-from sim.backends.machines import BUILD
 from sim.backends.native import NativeMachine
-from sim.encode.encode import load
+from sim.backends.rtl import BUILD
+from sim.encode.encode import encode
 from sim.encode.order import ranks
 from sim.encode.program import Program
 from sim.results.cycles import Wavefront
@@ -39,7 +39,7 @@ def simulated():
 @pytest.mark.parametrize("lanes", LANES)
 @pytest.mark.parametrize("name", ["2-D", "3-D", "fan"])
 def test_an_object_of_all_materials_has_the_models_bits(name, lanes, rng, simulated):
-    loaded = load(scene(name, rng, 300))
+    loaded = encode(scene(name, rng, 300))
     expected = list(run(loaded, NativeMachine(loaded.image)))
     machine = simulated(loaded.image, circuit(lanes))
     assert_same(run(loaded, machine), expected)
@@ -53,13 +53,13 @@ def test_no_order_of_edges_or_nodes_changes_a_bit(lanes, rng, simulated):
     for name in ("2-D", "3-D", "fan"):
         one = scene(name, rng, 30)
         mesh, edges = one.mesh, len(one.mesh.edges)
-        quick = load(one)
+        quick = encode(one)
         expected = list(run(quick, NativeMachine(quick.image)))
         by_node = np.lexsort(ranks(quick.node_order)[mesh.edges].T[::-1])
         orders = quick.edge_order[::-1], rng.permutation(edges), by_node
-        objects = [load(one, edge_order=order) for order in orders]
+        objects = [encode(one, edge_order=order) for order in orders]
         nodes = len(mesh.points)
-        objects += [renumbered(load(one), order) for order in (rng.permutation(nodes), np.arange(nodes)[::-1])]
+        objects += [renumbered(encode(one), order) for order in (rng.permutation(nodes), np.arange(nodes)[::-1])]
         cycles = set()
         for loaded in objects:
             machine = simulated(loaded.image, circuit(lanes))
@@ -85,7 +85,7 @@ def test_saturating_images_have_the_models_bits_and_faults(lanes, seed, simulate
 
 
 def test_a_run_in_pieces_is_the_same_run_and_its_cycles_add_up(rng, simulated):
-    loaded = load(scene("2-D", rng, 30))
+    loaded = encode(scene("2-D", rng, 30))
     model, pieces = NativeMachine(loaded.image), simulated(loaded.image, circuit(2))
     assert pieces.cycles == 0 and not pieces.force.any()
     for steps in (1, 3, 6):
@@ -99,7 +99,7 @@ def test_a_run_in_pieces_is_the_same_run_and_its_cycles_add_up(rng, simulated):
 
 def test_after_a_reset_at_any_cycle_the_machine_says_so_and_is_loaded_again(rng, simulated):
     """500 times, in the middle of a run and around its beginning; what is loaded then runs as ever."""
-    loaded = load(scene("2-D", rng, 30))
+    loaded = encode(scene("2-D", rng, 30))
     expected = NativeMachine(loaded.image)
     expected.step(1)
     machine, map_ = simulated(loaded.image, circuit(2)), Map(circuit(2))
@@ -121,7 +121,7 @@ def test_after_a_reset_at_any_cycle_the_machine_says_so_and_is_loaded_again(rng,
 
 def test_a_run_that_is_stopped_ends_with_a_step_and_goes_on_with_the_same_bits(rng, simulated):
     """At any cycle of it, the same object all the while: no state is written back between the runs."""
-    loaded = load(scene("2-D", rng, 30))
+    loaded = encode(scene("2-D", rng, 30))
     model, machine, map_ = NativeMachine(loaded.image), simulated(loaded.image, circuit(2)), Map(circuit(2))
     ends, circuit_ = Wavefront(loaded.image, circuit(2)).run(20), machine.circuit
     run, stop, done, cycles = (

@@ -6,7 +6,7 @@ from time import process_time
 import pytest
 from rtl_objects import circuit, rtl_machine
 
-from sim.encode.encode import load
+from sim.encode.encode import encode
 from sim.speed import meshes
 
 LEAST = 200_000
@@ -15,7 +15,7 @@ LEAST = 200_000
 
 @pytest.mark.campaign
 def test_four_busy_lanes_are_simulated_at_200_000_cycles_a_second():
-    machine, speeds = rtl_machine(load(meshes.scene("5x5x5")).image, parameters=circuit(4)), []
+    machine, speeds = rtl_machine(encode(meshes.scene("5x5x5")).image, parameters=circuit(4)), []
     machine.step(20)
     for _ in range(5):
         cycles, began = machine.cycles, process_time()

@@ -9,7 +9,7 @@ import pytest
 from integer_objects import random_image
 from rtl_objects import rtl_machine
 
-import sim.backends.rtl
+import sim.backends.simulated_circuit
 import sim.backends.verilated
 from golden.support.errors import InputError
 from hw.parameters import Parameters
@@ -43,7 +43,7 @@ endmodule
 @pytest.fixture
 def stub(monkeypatch):
     core = SimpleNamespace(faults=[])
-    monkeypatch.setattr(sim.backends.rtl, "emit", lambda parameters: (LANE + CIRCUIT, core))
+    monkeypatch.setattr(sim.backends.simulated_circuit, "emit", lambda parameters: (LANE + CIRCUIT, core))
     monkeypatch.setattr(sim.backends.verilated, "FAST", "-O0")
 
 
@@ -102,7 +102,7 @@ def test_a_missing_verilator_is_named(shim, tmp_path, monkeypatch):
 def test_a_damaged_library_is_named(stub, tmp_path, monkeypatch, rng):
     broken = tmp_path / "broken.so"
     broken.write_bytes(b"\x7fELF and then nothing")
-    monkeypatch.setattr(sim.backends.rtl, "library", lambda *args, **kwargs: broken)
+    monkeypatch.setattr(sim.backends.simulated_circuit, "library", lambda *args, **kwargs: broken)
     with pytest.raises(InputError) as refused:
         rtl_machine(random_image(rng), parameters=TINY, folder=tmp_path)
     assert str(refused.value) == f"{broken} must be a library, but is damaged: delete it, and it will be built again"

@@ -13,9 +13,11 @@ from sim_objects import Standin, in_place_of_the_circuit
 from golden.physics import model
 from golden.scene import load as scenes
 from sim.__main__ import main
-from sim.backends import machines, native, waves
-from sim.results import compare as comparison
-from sim.results.compare import power
+from sim.backends import native, waves
+from sim.backends.registry import BACKENDS
+from sim.backends.rtl import RtlBackend
+from sim.results import comparison
+from sim.results.comparison import power
 from sim.run import LANES, UPDATES, run
 from sim.support import batch
 from sim.support.folder import MARK
@@ -28,8 +30,7 @@ HARD = changed(QUICK, "force = [1, 0]", "force = [1e5, 0]")  # saturates
 @pytest.fixture
 def circuit(monkeypatch):
     stand_in = in_place_of_the_circuit()
-    monkeypatch.setattr(machines, "circuit", stand_in)
-    monkeypatch.setattr(machines, "check_room", lambda image, parameters: None)
+    monkeypatch.setitem(BACKENDS, RtlBackend.name, stand_in)
     return stand_in
 
 
@@ -204,7 +205,7 @@ class OneBit(Standin):
 
 
 def test_a_circuit_that_differs_exits_1(circuit, scene, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(machines, "circuit", in_place_of_the_circuit(OneBit))
+    monkeypatch.setitem(BACKENDS, RtlBackend.name, in_place_of_the_circuit(OneBit))
     assert main(["compare", scene, "--out", str(tmp_path / "out")]) == 1
     said, err = lines(capsys)
     assert err == ["error: block: the circuit's frames differ from the integer model's"]

@@ -15,7 +15,7 @@ from golden.physics import materials
 from golden.support.errors import InputError
 from sim.encode import limits
 from sim.encode.coefficients import coefficient
-from sim.encode.encode import load
+from sim.encode.encode import encode
 from sim.encode.order import order, ranks
 from sim.encode.units import HEADROOM, choose, expected_speed
 from sim.run import run
@@ -47,7 +47,7 @@ def mixed(**kwargs):
 
 def test_positions_velocities_forces_and_ratios_come_back():
     scene = mixed()
-    loaded = load(scene)
+    loaded = encode(scene)
     image, units = loaded.image, loaded.units
 
     def half_a_bit(q, unit):
@@ -74,7 +74,7 @@ def lengths(scene):
 
 def test_masses_come_back_and_held_nodes_have_none():
     scene = mixed()
-    loaded = load(scene)
+    loaded = encode(scene)
     for phase in scene.phases:
         loaded.start(phase, loaded.image.v)
         factor = loaded.image.inverse_mass
@@ -88,7 +88,7 @@ def test_masses_come_back_and_held_nodes_have_none():
 
 def test_a_phase_sets_the_velocities_of_held_nodes_only(rng):
     scene = mixed()
-    loaded = load(scene)
+    loaded = encode(scene)
     before = rng.integers(-1000, 1000, loaded.image.v.shape)
     after = loaded.start(scene.phases[1], before)
     held = scene.phases[1].held[loaded.node_order]
@@ -97,7 +97,7 @@ def test_a_phase_sets_the_velocities_of_held_nodes_only(rng):
 
 def test_material_coefficients_come_back():
     scene = mixed()
-    loaded = load(scene)
+    loaded = encode(scene)
     units = loaded.units
     for material, record, full in zip(scene.materials, loaded.image.materials, units.trial, strict=True):
 
@@ -139,7 +139,7 @@ def test_units_are_powers_of_two_with_headroom(dim):
 
 def test_the_image_is_in_this_order():
     scene = mixed()
-    loaded = load(scene)
+    loaded = encode(scene)
     node_order, edge_order = order(scene.mesh.points, scene.mesh.edges)
     assert (loaded.node_order == node_order).all() and (loaded.edge_order == edge_order).all()
     ends = np.sort(node_order[loaded.image.edges], axis=1)
@@ -149,7 +149,7 @@ def test_the_image_is_in_this_order():
 
 def test_any_order_of_nodes_gives_the_same_bits(rng):
     """As long as an edge keeps its direction: half-way cases are rounded up, not away from zero."""
-    images = [load(mixed()).image for _ in range(2)]
+    images = [encode(mixed()).image for _ in range(2)]
     place = rng.permutation(12)  # node n becomes node place[n]
     other = images[1]
     other.edges = place[other.edges]
@@ -184,7 +184,7 @@ def test_rest_is_exact():
     """Stress-free, no load: not a bit moves, whatever the material."""
     for dim, m in MESHES.items():
         for material in MATERIALS.values():
-            image = load(objects.scene(m, material, DT, [objects.phase(m, 10, objects.bottom(m))])).image
+            image = encode(objects.scene(m, material, DT, [objects.phase(m, 10, objects.bottom(m))])).image
             machine = Machine(image)
             machine.step(10)
             for name in ("x", "v", "ratio"):
@@ -240,13 +240,13 @@ def pressed(material=SPRING, mass=0.01, load=(0.0, 0.0), velocity=(0.0, -0.1), s
 )
 def test_refusals(arguments, message):
     with np.errstate(over="ignore"), pytest.raises(InputError) as caught:
-        limits.load(pressed(**arguments))
+        limits.encode(pressed(**arguments))
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
 
 
 def test_a_scene_within_the_limits_is_loaded_at_its_start():
     scene = mixed()
-    tried, loaded = limits.load(scene).image, load(scene).image
+    tried, loaded = limits.encode(scene).image, encode(scene).image
     for name in ("x", "v", "load", "edges", "length", "ratio"):
         assert (getattr(tried, name) == getattr(loaded, name)).all()
     assert all((tried.inverse_mass[name] == loaded.inverse_mass[name]).all() for name in ("value", "shift"))

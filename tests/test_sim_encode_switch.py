@@ -11,13 +11,13 @@ from sim_objects import MATERIALS, block
 from golden.physics.materials import rheological, viscoelastic
 from golden.support.errors import InputError
 from sim.backends.native import NativeMachine
-from sim.encode.encode import load
+from sim.encode.encode import encode
 from sim.encode.switch import switch
 
 
 def pressed(name, steps=60):
     """(what the circuit was loaded with, the circuit with a block that is being held)"""
-    loaded = load(block(name, steps=(40, 40, 40)))
+    loaded = encode(block(name, steps=(40, 40, 40)))
     machine = rtl_machine(loaded.image, parameters=circuit(2))
     machine.step(40)
     machine.restart(loaded.start(loaded.scene.phases[1], machine.v))
@@ -49,19 +49,19 @@ def test_a_switch_keeps_the_force_and_goes_on_as_the_model_does(names):
 
 
 def test_there_must_be_as_many_as_there_were():
-    loaded = load(block("rheological"))
+    loaded = encode(block("rheological"))
     with pytest.raises(InputError, match="materials must be 1, as many as there were, not 2"):
         switch(loaded, None, (MATERIALS["rheological"],) * 2)
 
 
 def test_a_material_that_needs_a_smaller_time_step_is_refused():
-    loaded = load(block("rheological"))
+    loaded = encode(block("rheological"))
     with pytest.raises(InputError, match="dt must be at most"):
         switch(loaded, None, (viscoelastic("steel", 1e6, 1.0),))
 
 
 def test_a_material_beyond_the_units_of_the_run_is_refused():
-    loaded = load(block(rheological("down", 0.5, 0.001, 5.0)))
+    loaded = encode(block(rheological("down", 0.5, 0.001, 5.0)))
     with pytest.raises(
         InputError,
         match=r"materials.dough must have forces below .* N, the full scale of this run, "

@@ -11,7 +11,7 @@ from golden.physics.trajectory import Trajectory
 from sim.figures import reading, single_edge
 from sim.figures.catalogue import FIGURES, MATERIALS
 from sim.figures.runs import EDGE, load
-from sim.results.compare import BOUND
+from sim.results.comparison import BOUND
 
 BLOCKS = [*MATERIALS, *(f"{name}-3d" for name in MATERIALS)]
 # of k, c1 and c2 in the scenes: q exp(-T / tau), T = 0.105 s from the middle of the press

@@ -8,7 +8,7 @@ from environment import ROOT
 from golden.mesh import mesh
 from golden.physics import materials, stability
 from golden.scene import load as scene
-from sim.results.compare import BOUND
+from sim.results.comparison import BOUND
 from sim.run import run
 
 BODIES = {

@@ -6,7 +6,7 @@ from golden_objects import phase, scene
 from integer_objects import DT, MATERIALS, irregular, pressed
 
 from sim.backends.native import NativeMachine
-from sim.encode.encode import load
+from sim.encode.encode import encode
 
 MILLION = 1_000_000
 
@@ -14,7 +14,7 @@ MILLION = 1_000_000
 def at_rest(materials, rng, nodes=(3, 3)):
     mesh = irregular(nodes, rng)
     edge_material = rng.permutation(np.arange(len(mesh.edges)) % len(materials))
-    return load(scene(mesh, materials, DT, [phase(mesh, 1)], mass=0.002, edge_material=edge_material)).image
+    return encode(scene(mesh, materials, DT, [phase(mesh, 1)], mass=0.002, edge_material=edge_material)).image
 
 
 def assert_at_rest(machine, image):
@@ -56,7 +56,7 @@ def test_an_object_in_uniform_motion_keeps_its_velocity_to_the_bit(rng):
 def test_a_pressed_and_released_plastic_block_stays_for_a_million_steps(material, rng):
     """Held until its inner nodes have come to rest; what is left of their velocities rounds to no displacement."""
     block = pressed(irregular((3, 3), rng), MATERIALS[material], 3000, depth=0.1)
-    loaded = load(block)
+    loaded = encode(block)
     machine = NativeMachine(loaded.image)
     for part in block.phases:
         machine.restart(loaded.start(part, machine.v))
@@ -74,7 +74,7 @@ def test_the_ratio_of_a_loaded_viscoelastic_block_does_not_drift(rng):
     mesh = irregular((4, 4), rng)
     low, high = mesh.points[:, 1] < 0.006, mesh.points[:, 1] > 0.03
     part = phase(mesh, 100_000, low, load=(high, [0.02, -0.05]))
-    loaded = load(scene(mesh, MATERIALS["viscoelastic"], DT, [part], mass=0.002, gravity=[0.0, -9.81]))
+    loaded = encode(scene(mesh, MATERIALS["viscoelastic"], DT, [part], mass=0.002, gravity=[0.0, -9.81]))
     machine = NativeMachine(loaded.image)
     machine.step(part.steps // 2)
     middle = loaded.positions(machine.x)
@@ -100,7 +100,7 @@ def test_a_free_object_keeps_its_momentum_but_for_the_rounding_of_velocities(mat
     mesh = irregular((3, 3), rng)
     everywhere, masses = slice(None), rng.uniform(0.001, 0.003, 9)
     fastest = phase(mesh, 1, driven=(everywhere, rng.uniform(-0.05, 0.05, (9, 2))), load=(everywhere, 0.1))
-    loaded = load(scene(mesh, MATERIALS[material], DT, [fastest, phase(mesh, 1)], mass=masses))
+    loaded = encode(scene(mesh, MATERIALS[material], DT, [fastest, phase(mesh, 1)], mass=masses))
     machine = NativeMachine(loaded.image)
     velocity = loaded.start(fastest, loaded.image.v)
     machine.restart(loaded.start(loaded.scene.phases[1], velocity >> 3))

@@ -8,9 +8,9 @@ from rtl_objects import STATE, circuit, fan, renumbered, rtl_machine
 from golden.mesh.mesh import Mesh, rectangle
 from hw.machine.latency import Latencies
 from hw.parameters import Parameters
-from sim.backends.machines import BUILD
 from sim.backends.native import NativeMachine
-from sim.encode.encode import load
+from sim.backends.rtl import BUILD
+from sim.encode.encode import encode
 from sim.results.cycles import Wavefront, cycles_per_step
 from sim.speed import meshes
 from sim.speed.meshes import MESHES
@@ -47,10 +47,10 @@ KINDS = {
     "disconnected": disconnected,
 }
 ORDERS = {
-    "fast": lambda one, rng: load(one),
-    "reversed": lambda one, rng: load(one, edge_order=load(one).edge_order[::-1]),
-    "any edges": lambda one, rng: load(one, edge_order=rng.permutation(len(one.mesh.edges))),
-    "any nodes": lambda one, rng: renumbered(load(one), rng.permutation(len(one.mesh.points))),
+    "fast": lambda one, rng: encode(one),
+    "reversed": lambda one, rng: encode(one, edge_order=encode(one).edge_order[::-1]),
+    "any edges": lambda one, rng: encode(one, edge_order=rng.permutation(len(one.mesh.edges))),
+    "any nodes": lambda one, rng: renumbered(encode(one), rng.permutation(len(one.mesh.points))),
 }
 
 
@@ -102,7 +102,7 @@ def test_three_hundred_meshes(shape, seed):
 def test_the_benchmarks_meshes_take_the_cycles_that_it_says(name, updates):
     scene = meshes.scene(name)
     parameters = Parameters(lanes=4, updates=updates, nodes=1024)
-    machine = rtl_machine(load(scene).image, parameters=parameters, folder=BUILD)
+    machine = rtl_machine(encode(scene).image, parameters=parameters, folder=BUILD)
     try:
         runs = []
         for steps in (20, 21):

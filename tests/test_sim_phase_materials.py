@@ -11,8 +11,9 @@ from golden.physics.model import Model
 from golden.scene import archive
 from golden.scene import load as scenes
 from golden.support.errors import InputError
+from sim.compare import compare
 from sim.results import energy, ranges
-from sim.results.compare import BOUND, compare
+from sim.results.comparison import BOUND
 from sim.run import run
 
 PHASE = "duration = 0.005\n"

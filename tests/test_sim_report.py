@@ -12,11 +12,12 @@ from sim_objects import MESHES, block, in_place_of_the_circuit
 
 from golden.mesh import mesh
 from sim import report
-from sim.backends import machines
+from sim.backends.registry import BACKENDS
+from sim.backends.rtl import RtlBackend
+from sim.compare import compare
 from sim.report import pack, style, surface
 from sim.report.page import brief, least, percent, si, slug
 from sim.results import energy
-from sim.results.compare import compare
 from sim.results.face import watched
 
 SHOWN = {
@@ -71,7 +72,7 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def comparisons():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(machines, "circuit", in_place_of_the_circuit())
+        patch.setitem(BACKENDS, RtlBackend.name, in_place_of_the_circuit())
         return [compare(scene) for scene in SCENES]
 
 

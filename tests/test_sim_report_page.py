@@ -14,9 +14,11 @@ from sim_objects import in_place_of_the_circuit
 
 from golden.scene.load import load
 from sim import report
-from sim.backends import machines
+from sim.backends.registry import BACKENDS
+from sim.backends.rtl import RtlBackend
+from sim.compare import compare, complete
 from sim.report.page import slug
-from sim.results.compare import compare, completed, power
+from sim.results.comparison import power
 
 FLAT_ID, SOLID_ID = slug(FLAT.name), slug(SOLID.name)
 SHIPPED = Path(__file__).parents[1] / "scenes"
@@ -27,7 +29,7 @@ RATIO, FORCE, APART = (f"[data-role=colour][value={value}]" for value in ("ratio
 @pytest.fixture(scope="module")
 def comparisons():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(machines, "circuit", in_place_of_the_circuit())
+        patch.setitem(BACKENDS, RtlBackend.name, in_place_of_the_circuit())
         return [compare(scene) for scene in (FLAT, SOLID)]
 
 
@@ -93,7 +95,7 @@ def test_it_is_interactive_soon(browser, folder):
 def test_all_shipped_scenes_are_interactive_soon_and_not_large(browser, tmp_path):
     scenes = [load(path) for path in sorted(SHIPPED.glob("*.toml"))]
     assert len(scenes) >= 10
-    report.write([report.Section.of(completed(scene, {}, ("float", "fixed"))) for scene in scenes], tmp_path)
+    report.write([report.Section.of(complete(scene, {}, ("float", "fixed"))) for scene in scenes], tmp_path)
     size = (tmp_path / "index.html").stat().st_size
     shown, taken = soon(browser, tmp_path / "index.html")
     print(f"{len(scenes)} scenes: {size / 1e6:.1f} MB, interactive after {taken:.2f} s")

@@ -9,14 +9,14 @@ from golden.mesh.mesh import box, rectangle
 from hw.machine.issue_register import LATENCY as ISSUE_LATENCY
 from hw.machine.latency import Latencies
 from hw.parameters import Parameters
-from sim.encode.encode import load
+from sim.encode.encode import encode
 from sim.results.cycles import Wavefront, in_turn
 
 
 def wavefront(nodes, lanes, updates=1, latencies=None, axes=3):
     make = rectangle if len(nodes) == 2 else box
     mesh = make(nodes, tuple(0.0125 * (n - 1) for n in nodes))
-    image = load(pressed(mesh, MATERIALS["rheological"], 30)).image
+    image = encode(pressed(mesh, MATERIALS["rheological"], 30)).image
     parameters = Parameters(lanes=lanes, updates=updates, nodes=1024, axes=axes)
     return Wavefront(image, parameters, latencies), image
 

@@ -10,7 +10,7 @@ from scene_text import GEL, SCENE, TWO, changed, written
 from environment import ROOT
 from golden.physics.model import Model
 from sim.__main__ import main
-from sim.results import store
+from sim.results import run_folder
 from sim.support.folder import MARK
 
 BALL = changed(
@@ -35,7 +35,7 @@ def run(request, tmp_path):
 def test_every_frame_is_there(run, capsys):
     capsys.readouterr()
     assert main(["export", str(run), "--vtu"]) == 0
-    scene, _, kept = store.load(run)
+    scene, _, kept = run_folder.load(run)
     folder = run / "vtu"
     out, err = capsys.readouterr()
     assert (out, err) == (f"{scene.name}: {len(kept.t)} frames in {folder / 'run.pvd'}\n", "")
@@ -50,7 +50,7 @@ def test_every_frame_is_there(run, capsys):
 
 def test_a_frame_is_the_runs(run):
     main(["export", str(run), "--vtu"])
-    scene, _, kept = store.load(run)
+    scene, _, kept = run_folder.load(run)
     dim, element = scene.dim, {2: "triangle", 3: "tetra"}[scene.dim]
     model, last = Model(scene), len(kept.t) - 1
     for n in (0, last // 2, last):
@@ -89,7 +89,7 @@ def test_a_pressed_edge_pushes(tmp_path):
     """Squeezed from above, the upright edges push their ends apart: their force is above 0."""
     main(["run", str(written(tmp_path, SCENE)), "--backend", "float", "--out", str(tmp_path / "run")])
     main(["export", str(tmp_path / "run"), "--vtu"])
-    scene, _, _ = store.load(tmp_path / "run")
+    scene, _, _ = run_folder.load(tmp_path / "run")
     pressed = int(np.searchsorted(scene.frames, scene.phases[0].steps))
     frame = meshio.read(tmp_path / "run" / "vtu" / f"frame-{pressed:04}.vtu")
     upright = np.ptp(scene.mesh.points[scene.mesh.edges][:, :, 0], axis=1) == 0

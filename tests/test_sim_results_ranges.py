@@ -31,7 +31,7 @@ def watched_by_hand():
                 if isinstance(number, QArray):
                     names[name] = number.fmt.name
 
-    loaded = limits.load(scene)
+    loaded = limits.encode(scene)
     machine = Machine(loaded.image, watch)
     for phase in scene.phases:
         machine.restart(loaded.start(phase, machine.v))
@@ -41,7 +41,7 @@ def watched_by_hand():
 
 def test_watching_changes_no_bit(watched_by_hand):
     scene, result, _, machine, _ = watched_by_hand
-    loaded = limits.load(scene)
+    loaded = limits.encode(scene)
     for name, order in (("x", loaded.node_order), ("v", loaded.node_order), ("ratio", loaded.edge_order)):
         np.testing.assert_array_equal(getattr(machine, name), getattr(result.raw, name)[-1][order])
 
@@ -89,7 +89,7 @@ def test_the_largest_and_the_headroom(watched_by_hand):
 
 def test_what_saturates_has_no_headroom():
     scene = block("viscoelastic", steps=(6, 1, 1), every=1)
-    loaded, seen = limits.load(scene), ranges.Ranges()
+    loaded, seen = limits.encode(scene), ranges.Ranges()
     machine = Machine(loaded.image, seen)
     machine.step(5)
     machine.v = np.full_like(machine.v, Formats().velocity.raw_max)
@@ -101,7 +101,7 @@ def test_what_saturates_has_no_headroom():
 
 
 def test_trial_forces_of_several_materials_have_no_common_unit():
-    units = limits.load(block()).units
+    units = limits.encode(block()).units
     assert ranges.in_si("trial full scale", units) == (units.trial[0], "N")
     assert ranges.in_si("trial full scale", replace(units, trial=(1.0, 2.0))) == (1.0, "full scale")
 

@@ -13,7 +13,7 @@ from hw.parameters import Parameters
 from sim.encode import limits
 from sim.results import step_time as steptime
 from sim.results.cycles import Wavefront
-from sim.run import Result
+from sim.results.result import Result
 
 TIMING = {
     "board": "ulx3s-85f",
@@ -58,7 +58,7 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     scene = block(dim=3)
     found = next(board for board in steptime.on_boards(scene, tmp_path) if board["timed"])
     parameters = Parameters(**{name: TIMING[name] for name in Parameters.RANGES})
-    cycles = Wavefront(limits.load(scene).image, parameters).per_step()
+    cycles = Wavefront(limits.encode(scene).image, parameters).per_step()
     assert cycles >= RK4.stages * len(scene.mesh.edges) / 2
     assert found == {
         "board": "ulx3s-85f",

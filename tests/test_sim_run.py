@@ -11,10 +11,13 @@ from golden.datapath.formats import Formats
 from golden.datapath.machine import Machine
 from golden.physics import materials
 from golden.support.errors import InputError, InternalError
-from sim.backends import machines
+from sim.backends.fixed import ENGINES
+from sim.backends.registry import BACKENDS
+from sim.backends.rtl import RtlBackend
 from sim.backends.waves import found
-from sim.results.compare import BOUND
-from sim.run import CHECKS, Raw, checked_steps, run
+from sim.results.comparison import BOUND
+from sim.results.result import Raw
+from sim.run import CHECKS, checked_steps, run
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -32,7 +35,7 @@ def test_fixed_follows_float(material, dim):
 @pytest.mark.parametrize("material", ["rheological", "plastic-force"])
 def test_native_is_the_numpy_model(material):
     scene = block(material, 3, steps=(10, 5, 5), every=3)
-    native, reference = (run(scene, "fixed", engine=engine) for engine in machines.ENGINES)
+    native, reference = (run(scene, "fixed", engine=engine) for engine in ENGINES)
     assert native.raw.same(reference.raw)
     assert native.faults == reference.faults
     np.testing.assert_array_equal(native.trajectory.reaction, reference.trajectory.reaction)
@@ -129,7 +132,7 @@ def test_a_saturation_is_counted_by_name():
 
 def test_the_circuit_is_run_like_the_integer_model(monkeypatch, tmp_path):
     circuit = in_place_of_the_circuit()
-    monkeypatch.setattr(machines, "circuit", circuit)
+    monkeypatch.setitem(BACKENDS, RtlBackend.name, circuit)
     scene = block(steps=(10, 5, 5))
     fixed = run(scene, "fixed")
     rtl = run(scene, "rtl", lanes=3, updates=2, waves=tmp_path / "waves.vcd")
@@ -193,7 +196,7 @@ def test_progress(backend):
         ({"backend": "rtl", "updates": 3}, "updates must be a whole number from 1 to 2, not 3"),
         (
             {"backend": "fixed", "waves": "w.fst"},
-            "waves must go with the backend rtl, not fixed: only the circuit has signals",
+            "waves must go with the backend rtl, not fixed",
         ),
         ({"backend": "rtl", "waves": Path("w.png")}, "waves must be a file ending in .vcd or .fst, not w.png"),
         ({"backend": "fixed", "edge_order": [0, 1]}, "edge_order must be a permutation of 0 to 22"),

@@ -40,5 +40,5 @@ class Trajectory:
 
 def load(path) -> Trajectory:
     """The trajectory in a file that `Trajectory.save` wrote; what else is in there stays there."""
-    with np.load(path) as archive:
+    with open(path, "rb") as file, np.load(file) as archive:  # NumPy leaves a damaged file open
         return Trajectory(**{field.name: archive[field.name] for field in fields(Trajectory)})

@@ -44,7 +44,7 @@ def _numbers(materials: tuple[Material, ...]) -> list[tuple]:
 
 def load(path) -> Scene:
     """The scene in a file that `save` wrote, equal to it but for its path, which is this file."""
-    with np.load(path) as archive:
+    with open(path, "rb") as file, np.load(file) as archive:  # NumPy leaves a damaged file open
         kept = {name: archive[name] for name in archive}
 
     def materials(numbers):

@@ -1,28 +1,59 @@
-"""A circuit, simulated or on a board, loaded with an image: the same face as `golden.datapath.machine.Machine`."""
+"""A machine in a circuit, simulated or on a board, behind the circuit's host port."""
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import Protocol
 
 import numpy as np
 
 from golden.datapath.image import Image
 from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region
-from sim.encode.program import Program
+from hw.parameters import Parameters
+from sim.encode.program import Program, Write
+
+
+class Circuit(Protocol):
+    """A circuit behind its host port: `sim.backends.simulated_circuit.SimulatedCircuit`,
+    `sim.backends.link.board.Board`.
+
+    Attributes
+    ----------
+    parameters : Parameters
+    faults : list of str
+        Names of the bits of its sticky faults.
+    """
+
+    parameters: Parameters
+    faults: list[str]
+
+    def write(self, writes: Iterable[Write]) -> None:
+        """Write words, in this order."""
+
+    def read(self, addresses: list[int]) -> np.ndarray:
+        """Return (n,) unsigned words."""
+
+    def run(self, cycles: int) -> bool:
+        """Let the circuit run so many cycles, if it is simulated; return whether its run goes on."""
+
+    def wait(self) -> None:
+        """Return when its run is over."""
+
+    def close(self) -> None:
+        """Let go of it."""
 
 
 class CircuitMachine:
-    """A circuit loaded with an image.
+    """A `sim.backends.machine.ClockedMachine` in a circuit that is loaded with an image.
 
     Parameters
     ----------
-    circuit : sim.backends.rtl.Circuit or sim.backends.link.board.Board
     verify : callable, optional
         Called with all (address, word) pairs that were written, after loading.
 
     Attributes
     ----------
     x, v, ratio, force, faults
-        As of `golden.datapath.machine.Machine`; a fault counts 1 for each sticky flag that was set.
+        See `sim.backends.machine.Machine`; a fault counts 1 for each sticky flag that was set.
     cycles : int
         Clock cycles of all steps so far, by the circuit's own counter.
 
@@ -32,10 +63,10 @@ class CircuitMachine:
         If the circuit is too small for the image.
     """
 
-    def __init__(self, image: Image, circuit, verify: Callable | None = None):
+    def __init__(self, image: Image, circuit: Circuit, verify: Callable[[list[Write]], object] | None = None):
         self._program = Program(image, circuit.parameters)
         self._map, self._formats = Map(circuit.parameters), image.formats
-        self.circuit = circuit
+        self.circuit, self.parameters = circuit, circuit.parameters
         writes = [*self._program.load(), *self._program.start(image.v, image.x)]
         circuit.write([(self._control(Control.FAULTS), (1 << len(circuit.faults)) - 1), *writes])
         if verify:
@@ -45,7 +76,7 @@ class CircuitMachine:
         self.force = np.zeros_like(image.x)
 
     def restart(self, v: np.ndarray):
-        """New velocities, and the image's loads and masses as they are now."""
+        """Go on with these velocities, and take up changes of the image's loads and masses."""
         self.circuit.write(self._program.start(v))
         self.v = v
 
@@ -56,6 +87,7 @@ class CircuitMachine:
         self.ratio = image.ratio.copy()
 
     def step(self, steps: int = 1):
+        """Let the circuit compute so many steps."""
         self.circuit.write([(self._control(Control.RUN), steps)])
         self.circuit.wait()
         self.fetch()
@@ -64,13 +96,14 @@ class CircuitMachine:
         self.faults |= Counter({name: 1 for bit, name in enumerate(self.circuit.faults) if int(faults) >> bit & 1})
 
     def close(self):
+        """Let go of the circuit."""
         self.circuit.close()
 
     def _control(self, register):
         return self._map.address(Region.CONTROL, 0, register)
 
     def fetch(self):
-        """Read the object's state as the circuit has it now; refused while it runs."""
+        """Read the object's state; the circuit refuses while it runs."""
         names = (*NODE_STATE, *NODE_FORCE)
         addresses = [a for name in names for a in self._program.node_addresses(name)]
         nodes = self._signed(self.circuit.read(addresses)).reshape(len(names), -1).T

@@ -1,103 +1,96 @@
-"""The emitted Verilog, simulated behind its host port."""
+"""The backend that simulates the circuit's emitted Verilog with Verilator."""
 
-import ctypes
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from hw.emit.verilog import LANE, TOP, emit
+from golden.support import paths
+from golden.support.errors import InputError
 from hw.parameters import Parameters
-from sim.backends.verilated import library, opened
+from sim.backends import waves
+from sim.backends.backend import IntegerBackend, Option
+from sim.backends.machine import ClockedMachine
+from sim.encode import limits
+from sim.encode.encode import EncodedScene
+from sim.support.arguments import whole
 
-SHIM = Path(__file__).with_name("shim.cpp")
-CHUNK = 1_000_000
-"""Cycles simulated per call: a Ctrl-C is heard in between."""
+BUILD = paths.BUILD / "rtl"
+"""Where simulated circuits are kept, compiled."""
+LANES, UPDATES = 2, 1
+SIZES = (
+    Option("lanes", f"edge processors of the circuit ({LANES})", {"type": whole, "metavar": "P"}),
+    Option(
+        "updates", f"nodes that the circuit updates in a cycle, 1 or 2 ({UPDATES})", {"type": whole, "metavar": "M"}
+    ),
+)
+WAVES = Option(
+    "waves",
+    "write the waveforms of the circuit's first 5000 busy cycles as well (vcd, which is larger but needs no library)",
+    {"nargs": "?", "const": "vcd", "choices": waves.FORMATS, "metavar": "vcd|fst"},
+)
 
 
-class Circuit:
-    """A simulated circuit behind its host port.
+@dataclass(frozen=True)
+class RtlBackend(IntegerBackend):
+    """The circuit's Verilog under Verilator, with ``lanes`` edge processors and ``updates`` node updaters.
 
-    Parameters
-    ----------
-    parameters : Parameters
-    folder : Path
-        Where compiled circuits are kept.
-    waves : Path, optional
-        A ``.vcd`` or ``.fst`` file to record to.
-
-    Attributes
-    ----------
-    parameters : Parameters
-    faults : list of str
-        Names of the bits of its sticky faults.
+    ``waves`` is the file to which its waveforms are written, .vcd or .fst.
     """
 
-    def __init__(self, parameters: Parameters, folder: Path, waves: Path | None = None):
-        self.parameters = parameters
-        text, core = emit(parameters)
-        self.faults = core.faults
-        trace = waves.suffix[1:] if waves else None
-        built = library(TOP, text, SHIM, folder=folder, repeated=LANE, trace=trace)
-        shared = opened(built)
-        self._new, self._delete = shared.circuit_new, shared.circuit_delete
-        self._transact, self._wait, self._cycles = shared.circuit_transact, shared.circuit_wait, shared.circuit_cycles
-        self._new.restype, self._new.argtypes = ctypes.c_void_p, [ctypes.c_char_p]
-        self._transact.restype = ctypes.c_long
-        self._transact.argtypes = [ctypes.c_void_p, ctypes.c_long, *[ctypes.c_void_p] * 5]
-        self._wait.argtypes = [ctypes.c_void_p, ctypes.c_long]
-        self._cycles.restype = ctypes.c_uint64
-        for function in (self._delete, shared.circuit_reset, self._cycles):
-            function.argtypes = [ctypes.c_void_p]
-        self._handle = self._new(str(waves).encode() if waves else None)
-        self._reset = shared.circuit_reset
-        self.reset()
+    lanes: int = LANES
+    updates: int = UPDATES
+    waves: Path | None = None
 
-    def reset(self):
-        self._reset(self._handle)
+    name = "rtl"
+    words = "Verilog in simulation"
+    summary = "its Verilog under Verilator"
+    compared = True
+    options = *SIZES, WAVES
 
-    def close(self):
-        if self._handle:
-            self._delete(self._handle)
-            self._handle = None
+    @classmethod
+    def from_options(cls, args: Namespace, out: Path) -> RtlBackend:
+        """Return the backend that the command line asks for."""
+        return cls(args.lanes or LANES, args.updates or UPDATES, args.waves and out / f"waves.{args.waves}")
 
     @property
-    def clock(self) -> int:
-        """Cycles simulated so far."""
-        return self._cycles(self._handle)
+    def parameters(self) -> Parameters:
+        """The circuit that is simulated. Raises `InputError` for sizes that it can't have."""
+        try:
+            return Parameters(lanes=self.lanes, updates=self.updates)
+        except ValueError as error:
+            raise InputError(str(error)) from None
 
-    def transact(self, address, data, write) -> tuple[np.ndarray, np.ndarray]:
-        """(answers, errors) of requests, one a cycle. Arrays of equal length."""
-        n = len(address)
-        address, data = np.ascontiguousarray(address, np.uint32), np.ascontiguousarray(data, np.uint64)
-        write = np.ascontiguousarray(write, np.uint8)
-        answer, error = np.empty(n, np.uint64), np.empty(n, np.uint8)
-        pointers = [a.ctypes.data for a in (address, data, write, answer, error)]
-        got = self._transact(self._handle, n, *pointers)
-        if got != n:
-            raise RuntimeError(f"the circuit answered {got} of {n} requests")
-        return answer, error
+    def check(self) -> None:
+        """Raise `InputError` for sizes that the circuit can't have, or waveforms that can't be recorded here."""
+        if self.waves is not None:
+            waves.check(self.waves)
+        _ = self.parameters
 
-    def write(self, writes):
-        """(address, data) pairs. Raises RuntimeError if one is refused."""
-        pairs = list(writes)
-        address, data = zip(*pairs, strict=True)
-        _, error = self.transact(address, data, np.ones(len(pairs)))
-        if error.any():
-            raise RuntimeError(f"the circuit refused a write to {address[int(error.argmax())]:#x}")
+    def check_room(self, encoded: EncodedScene) -> None:
+        """Raise `InputError` for an object that is larger than the circuit, with the materials of any phase."""
+        check_room(encoded, self.parameters)
 
-    def read(self, addresses) -> np.ndarray:
-        """(n,) unsigned words. Raises RuntimeError if a read is refused."""
-        zeros = np.zeros(len(addresses))
-        answer, error = self.transact(addresses, zeros, zeros)
-        if error.any():
-            raise RuntimeError(f"the circuit refused to read {addresses[int(error.argmax())]:#x}")
-        return answer
+    @contextmanager
+    def open(self, encoded: EncodedScene) -> Iterator[ClockedMachine]:
+        """Give the simulated circuit, loaded; it is compiled unless it has been before."""
+        from sim.backends.circuit import CircuitMachine
+        from sim.backends.simulated_circuit import SimulatedCircuit  # Amaranth and Verilator are slow to load
 
-    def run(self, cycles: int) -> bool:
-        """Simulate so many cycles, or to the end of the run; whether it goes on."""
-        return bool(self._wait(self._handle, cycles))
+        self.check_room(encoded)
+        circuit = SimulatedCircuit(self.parameters, BUILD, self.waves)
+        try:
+            yield CircuitMachine(encoded.image, circuit)
+        finally:
+            circuit.close()
 
-    def wait(self):
-        """Simulate until the run is over."""
-        while self.run(CHUNK):
-            pass
+
+def check_room(encoded: EncodedScene, parameters: Parameters) -> None:
+    """Raise `InputError` for an object that is larger than a circuit, with the materials of any phase."""
+    from sim.encode.program import Program  # the memory map is slow to load
+
+    for phase in (encoded, *limits.later(encoded)):
+        Program(phase.image, parameters)

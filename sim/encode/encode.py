@@ -19,7 +19,7 @@ from sim.encode.units import Units, choose
 
 
 @dataclass(frozen=True, eq=False)
-class Loaded:
+class EncodedScene:
     """A scene in the circuit's numbers.
 
     ``image`` counts nodes and edges in the circuit's order: its node n is the scene's ``node_order[n]``, its edge e
@@ -80,7 +80,7 @@ def inverse_mass(mass: np.ndarray, units: Units, formats: Formats) -> dict[str, 
     return {"value": np.array(values, np.int64), "shift": np.array(shifts, np.int64)}
 
 
-def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray | None = None) -> Loaded:
+def encode(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray | None = None) -> EncodedScene:
     """The circuit's numbers for a scene, at the start of its first phase.
 
     Parameters
@@ -99,7 +99,7 @@ def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray
     edge_order = sorted_edges if edge_order is None else edge_order
     edges = np.sort(ranks(node_order)[scene.mesh.edges[edge_order]], axis=1)
 
-    materials, damper = consisting(scene.materials, units, formats)
+    materials, damper = encode_materials(scene.materials, units, formats)
     x = raw_vectors((scene.mesh.points[node_order] - units.centre) / units.size, formats.position)
     a0 = np.array([ratio(m.a0, formats) for m in scene.materials], np.int64)[scene.edge_material[edge_order]]
     image = Image(
@@ -117,12 +117,12 @@ def load(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray
         damper=damper,
     )
     image.length = natural_length(image)
-    loaded = Loaded(scene, units, image, node_order, edge_order)
-    image.v = loaded.start(scene.phases[0], image.v)
-    return loaded
+    encoded = EncodedScene(scene, units, image, node_order, edge_order)
+    image.v = encoded.start(scene.phases[0], image.v)
+    return encoded
 
 
-def consisting(materials: tuple[Material, ...], units: Units, formats: Formats):
+def encode_materials(materials: tuple[Material, ...], units: Units, formats: Formats):
     """An image's ``materials`` and ``damper``."""
     fields, tables = [], []
     for number, material in enumerate(materials):

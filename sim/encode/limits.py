@@ -8,33 +8,33 @@ from golden.datapath import records
 from golden.datapath.formats import Formats
 from golden.physics.scene import Scene
 from golden.support.errors import InputError
-from sim.encode import encode as image
-from sim.encode.encode import Loaded
+from sim.encode import encode as encoding
+from sim.encode.encode import EncodedScene
 from sim.encode.switch import prepared
 
 
-def load(scene: Scene, edge_order: np.ndarray | None = None) -> Loaded:
-    """`sim.encode.encode.load`, and every phase's numbers tried out. Raises `InputError` naming what doesn't fit."""
+def encode(scene: Scene, edge_order: np.ndarray | None = None) -> EncodedScene:
+    """Encode a scene and try the numbers of each phase. Raises `InputError` that names what doesn't fit."""
     _check_speed(scene)
     try:
-        loaded = image.load(scene, edge_order=edge_order)
+        encoded = encoding.encode(scene, edge_order=edge_order)
         for phase in scene.phases[::-1]:  # the first one last: it stays
-            loaded.start(phase, loaded.image.v)
-            _check_masses(loaded)
+            encoded.start(phase, encoded.image.v)
+            _check_masses(encoded)
     except InputError:
         raise
     except (ValueError, OverflowError) as error:
         raise InputError(f"the scene must have numbers that the circuit can hold: {error}") from None
-    for held in (loaded, *later(loaded)):
+    for held in (encoded, *later(encoded)):
         record = records.material(held.image.formats, len(held.image.damper["rho_value"]))
         for material, fields in zip(held.scene.materials, held.image.materials, strict=True):
             _check(record, fields, f"materials.{material.name} must have coefficients")
-    return loaded
+    return encoded
 
 
-def later(loaded: Loaded) -> list[Loaded]:
+def later(encoded: EncodedScene) -> list[EncodedScene]:
     """The object with the materials that each phase brings, as it would be at its start."""
-    return [prepared(loaded, materials) for materials in loaded.scene.material_sets[1:]]
+    return [prepared(encoded, materials) for materials in encoded.scene.material_sets[1:]]
 
 
 def _check_speed(scene: Scene) -> None:
@@ -49,10 +49,10 @@ def _check_speed(scene: Scene) -> None:
             )
 
 
-def _check_masses(loaded: Loaded) -> None:
-    record = records.inverse_mass(loaded.image.formats)
-    for n, node in enumerate(loaded.node_order):
-        fields = {name: values[n] for name, values in loaded.image.inverse_mass.items()}
+def _check_masses(encoded: EncodedScene) -> None:
+    record = records.inverse_mass(encoded.image.formats)
+    for n, node in enumerate(encoded.node_order):
+        fields = {name: values[n] for name, values in encoded.image.inverse_mass.items()}
         _check(record, fields, f"mass must give node {node} a factor")
 
 

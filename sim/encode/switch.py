@@ -10,23 +10,23 @@ from golden.physics import stability
 from golden.physics.materials import Material
 from golden.physics.switch import switched
 from golden.support.errors import InputError
-from sim.encode.encode import Loaded, consisting
+from sim.encode.encode import EncodedScene, encode_materials
 from sim.encode.units import largest_share, trials_of
 
 
-def switch(loaded: Loaded, machine, materials: tuple[Material, ...]) -> Loaded:
+def switch(encoded: EncodedScene, machine, materials: tuple[Material, ...]) -> EncodedScene:
     """Give the machine, which is between two steps, the scene's materials anew, one for each it had.
 
     Parameters
     ----------
-    loaded : Loaded
+    encoded : EncodedScene
         What the machine was loaded with; stays as it is.
     machine : sim.backends.circuit.CircuitMachine
         Or any other with ``x, v, ratio`` and ``take(image)``.
 
     Returns
     -------
-    Loaded
+    EncodedScene
         What the machine has now: the same object, units and order.
 
     Raises
@@ -35,44 +35,44 @@ def switch(loaded: Loaded, machine, materials: tuple[Material, ...]) -> Loaded:
         If there are more or fewer materials, one needs a smaller time step, or has forces or coefficients that the
         units of this run can't hold.
     """
-    after, fmt = prepared(loaded, tuple(materials)), loaded.image.formats
+    after, fmt = prepared(encoded, tuple(materials)), encoded.image.formats
     image = replace(
-        after.image, x=machine.x, v=machine.v, length=loaded.image.length.copy(), ratio=machine.ratio.copy()
+        after.image, x=machine.x, v=machine.v, length=encoded.image.length.copy(), ratio=machine.ratio.copy()
     )
-    for number, (old, new) in enumerate(zip(loaded.scene.materials, materials, strict=True)):
+    for number, (old, new) in enumerate(zip(encoded.scene.materials, materials, strict=True)):
         if old == new:
             continue
         edges = image.edge_material == number
-        ratio, natural = switched(old, new, *_state(loaded, machine, edges))
-        for name, values, q in (("ratio", ratio, fmt.ratio), ("length", natural / loaded.units.size, fmt.length)):
+        ratio, natural = switched(old, new, *_state(encoded, machine, edges))
+        for name, values, q in (("ratio", ratio, fmt.ratio), ("length", natural / encoded.units.size, fmt.length)):
             raw = np.floor(np.ldexp(values, q.frac_bits) + 0.5).astype(np.int64)
             getattr(image, name)[edges] = raw
     machine.take(image)
     return replace(after, image=image)
 
 
-def prepared(loaded: Loaded, materials: tuple[Material, ...]) -> Loaded:
+def prepared(encoded: EncodedScene, materials: tuple[Material, ...]) -> EncodedScene:
     """The object with other materials, as it would be at its start. Raises `InputError` as `switch`."""
-    scene, fmt = replace(loaded.scene, materials=materials), loaded.image.formats
-    if len(materials) != len(loaded.scene.materials):
+    scene, fmt = replace(encoded.scene, materials=materials), encoded.image.formats
+    if len(materials) != len(encoded.scene.materials):
         raise InputError(
-            f"materials must be {len(loaded.scene.materials)}, as many as there were, not {len(materials)}"
+            f"materials must be {len(encoded.scene.materials)}, as many as there were, not {len(materials)}"
         )
     stability.check(scene)
-    units = replace(loaded.units, trial=trials_of(scene, materials, loaded.units.velocity))
+    units = replace(encoded.units, trial=trials_of(scene, materials, encoded.units.velocity))
     for number, m in enumerate(materials):
         if largest_share(m) * units.trial[number] > units.force:
             raise InputError(
                 f"materials.{m.name} must have forces below {units.force:.3g} N, the full scale of this "
                 f"run, not up to {largest_share(m) * units.trial[number]:.3g} N: begin a run with it"
             )
-    fields, damper = consisting(materials, units, fmt)
-    return replace(loaded, scene=scene, units=units, image=replace(loaded.image, materials=fields, damper=damper))
+    fields, damper = encode_materials(materials, units, fmt)
+    return replace(encoded, scene=scene, units=units, image=replace(encoded.image, materials=fields, damper=damper))
 
 
-def _state(loaded: Loaded, machine, edges):
+def _state(encoded: EncodedScene, machine, edges):
     """l (m), dl/dt (m/s), a and L (m) of some edges, in the circuit's order."""
-    fmt, units, ends = loaded.image.formats, loaded.units, loaded.image.edges[edges].T
+    fmt, units, ends = encoded.image.formats, encoded.units, encoded.image.edges[edges].T
     d, w = (
         np.ldexp((raw[ends[1]] - raw[ends[0]]).astype(float), -q.frac_bits) * unit
         for raw, q, unit in ((machine.x, fmt.position, units.size), (machine.v, fmt.velocity, units.velocity))
@@ -80,5 +80,5 @@ def _state(loaded: Loaded, machine, edges):
     length = np.linalg.norm(d, axis=1)
     rate = (d * w).sum(axis=1) / length
     ratio = np.ldexp(machine.ratio[edges].astype(float), -fmt.ratio.frac_bits)
-    natural = np.ldexp(loaded.image.length[edges].astype(float), -fmt.length.frac_bits) * units.size
+    natural = np.ldexp(encoded.image.length[edges].astype(float), -fmt.length.frac_bits) * units.size
     return length, rate, ratio, natural

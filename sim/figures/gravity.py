@@ -11,7 +11,7 @@ from sim.figures.curves import Dot
 from sim.figures.film import Film
 from sim.figures.runs import Pair
 from sim.report import style
-from sim.results.compare import power
+from sim.results.comparison import power
 
 X, Y = (-9, 111), (-3, 104)  # mm, around the block
 SCALE = 0.0125  # inches per mm

@@ -9,7 +9,7 @@ from sim.figures import curves, paper, reading
 from sim.figures.body import STRAIN, Body
 from sim.figures.film import Film
 from sim.figures.runs import Pair
-from sim.results.compare import power
+from sim.results.comparison import power
 
 X, Y = (-10, 112), (-8, 103)  # mm, around the block
 ROOM = 90  # mm beside the last drawing, for what was measured

@@ -10,7 +10,7 @@ from golden.physics.scene import Scene
 from golden.physics.trajectory import Trajectory
 from sim.figures import single_edge
 from sim.figures.runs import EDGE, Pair
-from sim.results.compare import BOUND
+from sim.results.comparison import BOUND
 
 RECOVERY, BULGE = 1e-3, 1e-4
 """Largest differences that pass: of bounce-back and residual, and of the bulge of a side by the object's size."""

@@ -11,10 +11,12 @@ from golden.physics.scene import Scene
 from golden.physics.trajectory import Trajectory
 from golden.scene import load as scenes
 from golden.support.paths import SCENES
+from sim.backends.float64 import FloatBackend
 from sim.figures import single_edge
-from sim.results.compare import dx_rel
+from sim.results.comparison import dx_rel
 from sim.results.face import Face, watched
-from sim.run import Result, run
+from sim.results.result import Result
+from sim.run import run
 
 SHIPPED = SCENES
 EDGE = "edge-"
@@ -64,5 +66,7 @@ def load(name: str) -> Scene:
 
 def pair(scene: Scene, progress=None, *, backend: str) -> Pair:
     """Run the scene on float64 and on the circuit; ``progress(backend, steps done)``."""
-    float64, circuit = (run(scene, on, progress=progress and partial(progress, on)) for on in ("float", backend))
+    float64, circuit = (
+        run(scene, on, progress=progress and partial(progress, on)) for on in (FloatBackend.name, backend)
+    )
     return Pair(scene, circuit, float64)

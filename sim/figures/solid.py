@@ -14,7 +14,7 @@ from sim.figures.body import STRAIN, Body
 from sim.figures.film import Film
 from sim.figures.runs import Pair
 from sim.report.surface import outline, projected
-from sim.results.compare import power
+from sim.results.comparison import power
 
 SCALE, PLAN_SCALE = 0.0101, 0.0118  # inches per mm of all solid objects, and of what is seen from above
 MARGIN = np.array([7, 3])  # mm around a drawing, for the bulge

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim.results.compare import power
+from sim.results.comparison import power
 
 HEAD = "scene", "quantity", "circuit", "expected", "against", "difference", "allowed", ""
 

@@ -10,7 +10,7 @@ from golden.datapath.formats import Formats
 from golden.physics.scene import Scene
 from sim.report.surface import outline, surface
 from sim.results import energy
-from sim.results.compare import BOUND, Comparison
+from sim.results.comparison import BOUND, Comparison
 from sim.results.face import watched
 
 BUDGET = 800_000  # bytes of a scene's frames before base64 makes them a third longer

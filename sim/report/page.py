@@ -12,14 +12,16 @@ from matplotlib.colors import to_hex
 
 from golden.physics.scene import Scene
 from golden.support.files import write_text
+from sim.backends.float64 import FloatBackend
+from sim.backends.registry import BACKENDS
+from sim.compare import compare, complete
 from sim.report import pack, style
-from sim.results import ranges, stored
-from sim.results.compare import Comparison, compare, completed, power, shortcomings
+from sim.results import ranges, run_folder
+from sim.results.comparison import Comparison, power, shortcomings
 from sim.support.errors import about
 
 FOLDER = Path(__file__).parent
 DATA = "compare.json"
-BACKENDS = {"float": "float64", "fixed": "integer model", "rtl": "Verilog in simulation", "board": "board"}
 SCRIPTS = "data.js", "camera.js", "paint.js", "viewer.js", "chart.js", "ranges.js", "page.js"
 SAMPLES = 33  # of a colour scale
 
@@ -51,8 +53,8 @@ def section(scene: Scene, progress=None, *, lanes: int, updates: int) -> Section
 def of_runs(scene: Scene, progress=None, *, folders: dict[str, dict[str, Path]]) -> Section:
     """Pack the runs of a scene that are in ``folders[name of the scene]``; float64, if it isn't there, is run."""
     with about(scene):
-        runs = {backend: stored.load(folder)[1] for backend, folder in folders[scene.name].items()}
-        return Section.of(completed(scene, runs, ("float",), progress=progress))
+        runs = {backend: run_folder.load_result(folder)[1] for backend, folder in folders[scene.name].items()}
+        return Section.of(complete(scene, runs, (FloatBackend.name,), progress=progress))
 
 
 def write(sections: list[Section], folder: Path) -> None:
@@ -76,7 +78,7 @@ def write(sections: list[Section], folder: Path) -> None:
     page = environment.get_template("page.html.j2").render(
         sections=sections,
         entries=entries,
-        backends=BACKENDS,
+        backends={name: backend.words for name, backend in BACKENDS.items()},
         style=(FOLDER / "page.css").read_text(),
         script="\n".join((FOLDER / name).read_text() for name in SCRIPTS),
         data=[inlined(section.drawn | {"ranges": section.entry["ranges"]}) for section in sections],

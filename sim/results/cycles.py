@@ -85,7 +85,7 @@ def cycles_per_step(scene: Scene, lanes: int, updates: int) -> int:
     InputError
         If there is no such circuit, or it could not hold the scene at any capacity.
     """
-    image = limits.load(scene).image
+    image = limits.encode(scene).image
     room = {"nodes": max(2, image.nodes), "edges": len(image.edges), "materials": len(image.materials)}
     try:
         parameters = Parameters(lanes=lanes, updates=updates, **room)

@@ -17,12 +17,13 @@ from sim.results.energy import edge_forces
 COLLECTION = "run.pvd"
 
 
-def vtu(scene: Scene, trajectory: Trajectory, folder: Path, shown: Callable[[Iterable], Iterable] = iter) -> list[Path]:
-    """Write ``frame-0000.vtu`` and so on, then ``run.pvd``, which names them with their times (s); gives all of them.
+def vtu(scene: Scene, trajectory: Trajectory, folder: Path, track: Callable[[Iterable], Iterable] = iter) -> list[Path]:
+    """Write ``frame-0000.vtu`` and so on, then ``run.pvd``, which names them with their times (s); return their
+    paths.
 
     Points are the nodes in m, with the scene's displacement (m), velocity (m/s) and reaction (N). Cells are the edges
     and then the elements, with ratio a and force (N, above 0 where it pushes the ends apart), which float64 computes
-    from the frame's state; an element has the mean of its edges. ``shown`` may look at the numbers of the frames.
+    from the frame's state; an element has the mean of its edges. ``track`` may watch the numbers of the frames.
     """
     collection = folder / COLLECTION
     collection.unlink(missing_ok=True)
@@ -30,15 +31,18 @@ def vtu(scene: Scene, trajectory: Trajectory, folder: Path, shown: Callable[[Ite
     of_cells = mesh.cell_edges()
     digits = max(4, len(str(len(trajectory.t) - 1)))
     paths = []
-    for n in shown(range(len(trajectory.t))):
-        x, v, a, reaction = (getattr(trajectory, name)[n] for name in ("x", "v", "a", "reaction"))
-        force = forces[n]
+    for n in track(range(len(trajectory.t))):
+        x, a, force = trajectory.x[n], trajectory.a[n], forces[n]
         paths.append(folder / f"frame-{n:0{digits}}.vtu")
         meshfile.write(
             paths[-1],
             x,
             [mesh.edges, mesh.cells],
-            {"displacement": in_space(x - trajectory.x[0]), "velocity": in_space(v), "reaction": in_space(reaction)},
+            {
+                "displacement": in_space(x - trajectory.x[0]),
+                "velocity": in_space(trajectory.v[n]),
+                "reaction": in_space(trajectory.reaction[n]),
+            },
             {"ratio": [a, a[of_cells].mean(axis=1)], "force": [force, force[of_cells].mean(axis=1)]},
         )
     _write_collection(collection, trajectory.t, paths)
@@ -46,7 +50,7 @@ def vtu(scene: Scene, trajectory: Trajectory, folder: Path, shown: Callable[[Ite
 
 
 def in_space(vectors: np.ndarray) -> np.ndarray:
-    """(N, 3) of vectors (N, 2 or 3): ParaView takes two components for no vector."""
+    """Return (N, 3) of vectors (N, 2 or 3): ParaView takes two components for no vector."""
     return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
 

@@ -12,7 +12,7 @@ from golden.physics.scene import Scene
 from sim.encode import limits
 from sim.encode.switch import switch
 from sim.encode.units import Units
-from sim.run import Raw
+from sim.results.result import Raw
 
 SAMPLES = 100
 """Steps of a run that are looked at, unless it has fewer frames or more phases."""
@@ -146,19 +146,19 @@ def of_run(scene: Scene, raw: Raw, progress: Callable[[int], object] | None = No
 
     ``progress`` is called with the step that was reached.
     """
-    ranges, loaded, begun = Ranges(), limits.load(scene), None
-    machine = Machine(loaded.image, ranges)
+    ranges, encoded, begun = Ranges(), limits.encode(scene), None
+    machine = Machine(encoded.image, ranges)
     for frame, phase in _with_phase(scene):
-        machine.x, machine.v = raw.x[frame][loaded.node_order], raw.v[frame][loaded.node_order]
-        machine.ratio = raw.ratio[frame][loaded.edge_order]
+        machine.x, machine.v = raw.x[frame][encoded.node_order], raw.v[frame][encoded.node_order]
+        machine.ratio = raw.ratio[frame][encoded.edge_order]
         if phase is not begun and phase.materials:
-            loaded = switch(loaded, machine, phase.materials)
+            encoded = switch(encoded, machine, phase.materials)
         begun = phase
-        machine.restart(loaded.start(phase, machine.v))
+        machine.restart(encoded.start(phase, machine.v))
         machine.step()
         if progress:
             progress(int(scene.frames[frame]) + 1)
-    return ranges.entries(loaded.units)
+    return ranges.entries(encoded.units)
 
 
 def _with_phase(scene: Scene) -> Iterator[tuple]:

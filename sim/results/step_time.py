@@ -6,7 +6,7 @@ from golden.datapath.rk4 import RK4
 from golden.physics.scene import Scene
 from golden.support.errors import InputError
 from sim.encode import limits
-from sim.run import Result
+from sim.results.result import Result
 
 
 def of_run(scene: Scene, result: Result) -> dict:
@@ -52,7 +52,7 @@ def _timed(scene: Scene, timing) -> dict:
     parameters = Parameters(**{name: getattr(timing, name) for name in Parameters.SIZES})
     sizes = {name: getattr(parameters, name) for name in ("lanes", "updates", "axes")} | {"clock_mhz": timing.clock_mhz}
     try:
-        cycles = Wavefront(limits.load(scene).image, parameters).per_step()
+        cycles = Wavefront(limits.encode(scene).image, parameters).per_step()
     except InputError:  # too small for it
         return sizes | {"fits": False}
     step_us = cycles / timing.clock_mhz

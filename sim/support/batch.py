@@ -1,4 +1,4 @@
-"""Many scenes, each in a process of its own, as many at a time as there are cores."""
+"""Work on many scenes, each in a process of its own, as many at a time as there are cores."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from golden.physics.scene import Scene
 POLL = 0.2  # s between two looks for progress
 
 
-def over_scenes(work: Callable, scenes: list[Scene], shown: Callable | None = None) -> list:
-    """``[work(scene, progress), ...]``. `work` must be importable from the processes, and so what it returns.
+def over_scenes(work: Callable, scenes: list[Scene], report_progress: Callable | None = None) -> list:
+    """Return ``[work(scene, progress), ...]``. ``work`` must be importable from the processes, and so what it returns.
 
-    With ``shown``, every ``progress(backend, steps done)`` of a scene arrives here as ``shown(number, backend,
-    steps done)``; without, ``progress`` is None. The first exception ends it all.
+    With ``report_progress``, every ``progress(stage, steps done)`` of a scene arrives here as
+    ``report_progress(number, stage, steps done)``; without, ``progress`` is None. The first exception ends it all.
     """
     workers = min(len(scenes), cores())
     if workers == 1:
-        return [work(scene, shown and partial(shown, n)) for n, scene in enumerate(scenes)]
+        return [work(scene, report_progress and partial(report_progress, n)) for n, scene in enumerate(scenes)]
 
     context = get_context("spawn")
     queue = context.SimpleQueue()
-    with ProcessPoolExecutor(workers, context, _start, (queue if shown else None,)) as pool:
-        # the longest first, so that no core is left with it in the end
+    with ProcessPoolExecutor(workers, context, _start, (queue if report_progress else None,)) as pool:
+        # the longest first: started last, it would keep one core busy alone
         order = sorted(range(len(scenes)), key=lambda n: -scenes[n].steps * len(scenes[n].mesh.edges))
         futures = {n: pool.submit(_call, work, scenes[n], n) for n in order}
         waiting = set(futures.values())
@@ -35,7 +35,7 @@ def over_scenes(work: Callable, scenes: list[Scene], shown: Callable | None = No
             while waiting:
                 finished, waiting = wait(waiting, POLL, FIRST_COMPLETED)
                 while not queue.empty():
-                    shown(*queue.get())
+                    report_progress(*queue.get())
                 for future in finished:
                     future.result()
         except BaseException:
@@ -47,18 +47,19 @@ def over_scenes(work: Callable, scenes: list[Scene], shown: Callable | None = No
 
 
 def cores() -> int:
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
 def _start(queue) -> None:
     global _queue
     _queue = queue
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears it and ends this process
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent gets it and ends this process
 
 
 def _call(work, scene: Scene, number: int):
     return work(scene, _queue and partial(_send, number))
 
 
-def _send(number: int, backend: str, steps: int) -> None:
-    _queue.put((number, backend, steps))
+def _send(number: int, stage: str, steps: int) -> None:
+    _queue.put((number, stage, steps))

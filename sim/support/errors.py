@@ -1,4 +1,4 @@
-"""Which scene an error is about."""
+"""Errors that name the scene that they are about."""
 
 from contextlib import contextmanager
 
@@ -7,7 +7,7 @@ from golden.support.errors import InputError, InternalError
 
 @contextmanager
 def about(scene):
-    """Put the scene's file before the messages of errors that its numbers cause."""
+    """Put the scene's file in front of the messages of errors that its numbers cause."""
     try:
         yield
     except InputError as error:

@@ -1,4 +1,4 @@
-"""Folders that results are written into: never somebody else's by accident."""
+"""Folders that results are written to, marked so that files of others are never overwritten by accident."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A circuit behind its link, with the face of the simulated one (`sim.backends.rtl.Circuit`)."""
+"""A circuit behind its link, with the face of the simulated one (`sim.backends.simulated_circuit.SimulatedCircuit`)."""
 
 from __future__ import annotations
 

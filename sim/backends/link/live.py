@@ -9,7 +9,7 @@ from hw.link.frame import PAYLOAD_MOST, Frame
 from hw.link.protocol import ITEM_BYTES, ITEMS_MOST, Kind, head, item
 from hw.map.memory_map import NODE_FORCE, NODE_STATE, Map, Region
 from sim.backends.link.board import Board
-from sim.encode.encode import Loaded, raw_vectors
+from sim.encode.encode import EncodedScene, raw_vectors
 from sim.encode.order import ranks
 
 AXES = 3
@@ -26,8 +26,8 @@ class Live:
     Parameters
     ----------
     board : Board
-        Loaded with ``loaded.image`` (`sim.backends.circuit.CircuitMachine`).
-    loaded : sim.encode.encode.Loaded
+        Loaded with ``encoded.image`` (`sim.backends.circuit.CircuitMachine`).
+    encoded : sim.encode.encode.EncodedScene
     nodes : (n,) int
         In the scene's order.
 
@@ -37,9 +37,9 @@ class Live:
         If there are more nodes than fit one exchange: only what is read in one is of one step.
     """
 
-    def __init__(self, board: Board, loaded: Loaded, nodes):
-        self._board, self._loaded, self._nodes = board, loaded, np.asarray(nodes)
-        self._places = ranks(loaded.node_order)[self._nodes]
+    def __init__(self, board: Board, encoded: EncodedScene, nodes):
+        self._board, self._encoded, self._nodes = board, encoded, np.asarray(nodes)
+        self._places = ranks(encoded.node_order)[self._nodes]
         self._map = Map(board.parameters)
         most = most_nodes()
         if not 1 <= len(self._nodes) <= most:
@@ -62,7 +62,7 @@ class Live:
         (words,) = self._board.exchange([self.payload(velocity)])
         top = 1 << self._board.parameters.formats.state - 1
         raw = ((np.array(words) ^ top) - top).reshape(len(self._nodes), 2, AXES)
-        scene, units, fmt = self._loaded.scene, self._loaded.units, self._loaded.image.formats
+        scene, units, fmt = self._encoded.scene, self._encoded.units, self._encoded.image.formats
         x, force = (
             np.ldexp(raw[:, n, : scene.dim].astype(float), -q.frac_bits)
             for n, q in enumerate((fmt.position, fmt.accumulator))
@@ -73,7 +73,7 @@ class Live:
         """Of the command."""
         parts = []
         if velocity is not None:
-            fmt, units = self._loaded.image.formats, self._loaded.units
+            fmt, units = self._encoded.image.formats, self._encoded.units
             raw = raw_vectors(np.asarray(velocity) / units.velocity, fmt.velocity)
             mask = (1 << fmt.state) - 1
             for place, words in zip(self._places, raw.tolist(), strict=True):

@@ -12,7 +12,7 @@ from golden.mesh.mesh import rectangle
 from golden.scene.load import load
 from golden.support.errors import InputError
 from sim.__main__ import main
-from sim.results import store
+from sim.results import run_folder
 from sim.run import run
 
 
@@ -32,7 +32,7 @@ def kept(tmp_path):
 
 def test_a_run_is_loaded_again_from_its_folder_alone(kept):
     folder, before = kept
-    scene, summary, trajectory = store.load(folder)
+    scene, summary, trajectory = run_folder.load(folder)
     assert scene.path == folder / "scene.npz"
     assert (scene.name, scene.description, scene.dt) == (before.name, before.description, before.dt)
     assert scene.materials == before.materials and scene.materials[0].c_max == inf
@@ -103,13 +103,13 @@ def test_files_of_two_runs_are_refused(tmp_path, old, new):
 
 def test_a_summary_says_that_its_run_is_complete(kept, monkeypatch):
     folder, scene = kept
-    monkeypatch.setattr(store, "write_text", None)
+    monkeypatch.setattr(run_folder, "write_text", None)
     with pytest.raises(TypeError):
-        store.save(scene, run(scene, "float"), folder)
+        run_folder.save(scene, run(scene, "float"), folder)
     assert not (folder / "summary.json").exists()
 
 
 def refused(folder, message):
     with pytest.raises(InputError) as error:
-        store.load(folder)
+        run_folder.load(folder)
     assert str(error.value) == message

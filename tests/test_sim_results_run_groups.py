@@ -1,4 +1,4 @@
-"""sim.results.stored: runs taken up from their folders bit by bit; what can't be of a run, or not of one scene, is
+"""sim.results.run_groups: runs taken up from their folders bit by bit; what can't be of a run, or not of one scene, is
 refused."""
 
 import json
@@ -10,8 +10,9 @@ import pytest
 from sim_objects import block, in_place_of_the_circuit
 
 from golden.support.errors import InputError
-from sim.backends import machines
-from sim.results import store, stored
+from sim.backends.registry import BACKENDS
+from sim.backends.rtl import RtlBackend
+from sim.results import run_folder, run_groups
 from sim.run import run
 
 SCENE = replace(block("rheological-force", steps=(10, 5, 10)), name="loaf")
@@ -21,10 +22,10 @@ SOLID = replace(block("plastic", 3, steps=(10, 5, 10)), name="brick")
 def kept(folder, scene=SCENE, backend="fixed"):
     """A run in a folder; its result."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(machines, "circuit", in_place_of_the_circuit())
+        patch.setitem(BACKENDS, RtlBackend.name, in_place_of_the_circuit())
         result = run(scene, backend, engine="numpy")
     folder.mkdir()
-    store.save(scene, result, folder)
+    run_folder.save(scene, result, folder)
     return result
 
 
@@ -32,7 +33,7 @@ def kept(folder, scene=SCENE, backend="fixed"):
 @pytest.mark.parametrize("backend", ["float", "fixed", "rtl"])
 def test_a_run_is_the_same_when_it_is_taken_up(tmp_path, scene, backend):
     result = kept(tmp_path / "run", scene, backend)
-    again, found = stored.load(tmp_path / "run")
+    again, found = run_folder.load_result(tmp_path / "run")
     assert again.name == scene.name
     np.testing.assert_array_equal(found.trajectory.x, result.trajectory.x)
     assert (found.backend, found.faults, found.cycles, found.lanes, found.updates) == (
@@ -46,15 +47,15 @@ def test_a_run_is_the_same_when_it_is_taken_up(tmp_path, scene, backend):
 
 
 def summary(folder, **changes):
-    said = json.loads((folder / store.SUMMARY).read_text())
-    (folder / store.SUMMARY).write_text(json.dumps(said | changes))
+    said = json.loads((folder / run_folder.SUMMARY).read_text())
+    (folder / run_folder.SUMMARY).write_text(json.dumps(said | changes))
 
 
 def trajectory(folder, change):
-    with np.load(folder / store.TRAJECTORY) as archive:
+    with np.load(folder / run_folder.TRAJECTORY) as archive:
         arrays = dict(archive)
     change(arrays)
-    np.savez(folder / store.TRAJECTORY, **arrays)
+    np.savez(folder / run_folder.TRAJECTORY, **arrays)
 
 
 def cut(arrays):
@@ -86,14 +87,14 @@ def test_a_folder_that_cannot_be_of_a_run_is_refused(tmp_path, spoil, reason):
     spoil(folder)
     message = f"RUN must be a folder as `python -m sim run` left it, not {folder}: {reason}"
     with pytest.raises(InputError, match=f"^{re.escape(message)}$"):
-        stored.load(folder)
+        run_folder.load_result(folder)
 
 
 def test_runs_are_grouped_by_scene(tmp_path):
     for name, backend in (("a", "fixed"), ("c", "float"), ("d", "rtl")):
         kept(tmp_path / name, SCENE, backend)
     kept(tmp_path / "b", SOLID)
-    (first, loaf), (second, brick) = stored.grouped(tmp_path / name for name in "abcd")
+    (first, loaf), (second, brick) = run_groups.group_by_scene(tmp_path / name for name in "abcd")
     assert (first.name, second.name) == ("loaf", "brick")
     assert loaf == {"fixed": tmp_path / "a", "float": tmp_path / "c", "rtl": tmp_path / "d"}
     assert brick == {"fixed": tmp_path / "b"}
@@ -104,7 +105,7 @@ def refused(folders, message):
     message = message.format(**{folder.name: folder for folder in folders})
     message = f"RUN must be {message}"
     with pytest.raises(InputError, match=f"^{re.escape(message)}$"):
-        stored.grouped(folders)
+        run_groups.group_by_scene(folders)
 
 
 def test_two_runs_of_a_scene_on_one_backend_are_refused(tmp_path):

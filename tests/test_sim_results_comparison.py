@@ -1,4 +1,4 @@
-"""sim.results.compare: the figures of a comparison, what passes, and many scenes at once."""
+"""sim.compare and sim.results.comparison: the figures of a comparison, what passes, and many scenes at once."""
 
 import json
 from dataclasses import replace
@@ -9,9 +9,11 @@ import pytest
 from sim_objects import DT, MATERIALS, MESHES, Standin, block, in_place_of_the_circuit
 
 from golden.support.errors import InputError
-from sim.backends import machines
+from sim.backends.registry import BACKENDS, compared_backends
+from sim.backends.rtl import RtlBackend
+from sim.compare import compare, complete
 from sim.results import ranges
-from sim.results.compare import COMPARED, compare, completed, power, shortcomings
+from sim.results.comparison import power, shortcomings
 from sim.results.face import watched
 from sim.run import run
 from sim.support import batch
@@ -47,7 +49,7 @@ KEYS = [
 
 @pytest.fixture
 def circuit(monkeypatch):
-    monkeypatch.setattr(machines, "circuit", in_place_of_the_circuit())
+    monkeypatch.setitem(BACKENDS, RtlBackend.name, in_place_of_the_circuit())
 
 
 class OneBit(Standin):
@@ -102,7 +104,7 @@ def test_entry(circuit, material):
 
 
 def test_one_bit_in_one_frame_is_a_difference(monkeypatch):
-    monkeypatch.setattr(machines, "circuit", in_place_of_the_circuit(OneBit))
+    monkeypatch.setitem(BACKENDS, RtlBackend.name, in_place_of_the_circuit(OneBit))
     entry = compare(block("viscoelastic", steps=(10, 5, 10), every=5)).entry()
     assert entry["rtl_equals_fixed"] is False
     assert shortcomings(entry) == ["the circuit's frames differ from the integer model's"]
@@ -114,7 +116,7 @@ def test_a_flag_of_the_circuit_is_a_saturation(monkeypatch):
             super().step(steps)
             self.faults["velocity"] = 1
 
-    monkeypatch.setattr(machines, "circuit", in_place_of_the_circuit(Flagged))
+    monkeypatch.setitem(BACKENDS, RtlBackend.name, in_place_of_the_circuit(Flagged))
     entry = compare(block(steps=(5, 5, 5))).entry()
     assert entry["saturations"] == 1 and entry["faults"] == {"fixed": {}, "rtl": {"velocity": 1}}
     assert shortcomings(entry) == ["saturated: velocity"]
@@ -123,12 +125,12 @@ def test_a_flag_of_the_circuit_is_a_saturation(monkeypatch):
 def test_a_run_that_there_is_is_not_run_again(circuit):
     scene = block(steps=(10, 5, 5), every=10)
     fixed, told = run(scene, "fixed"), []
-    result = completed(scene, {"fixed": fixed}, ("float",), progress=lambda doing, steps: told.append(doing))
+    result = complete(scene, {"fixed": fixed}, ("float",), progress=lambda doing, steps: told.append(doing))
     assert list(result.runs) == ["fixed", "float"] and result.circuit is fixed and set(told) == {"float", "ranges"}
     entry = result.entry()
     assert (entry["rtl_equals_fixed"], entry["cycles"], entry["lanes"], entry["occupancy"]) == (None,) * 4
     assert entry["max_dx_rel"] == compare(scene).entry()["max_dx_rel"] and shortcomings(entry) == []
-    assert completed(scene, compare(scene).runs, COMPARED).circuit.backend == "rtl"
+    assert complete(scene, compare(scene).runs, compared_backends()).circuit.backend == "rtl"
 
 
 def test_shortcomings():
@@ -159,7 +161,10 @@ def test_power(x, text):
 def test_comparing_tells_how_far_it_is(circuit):
     told = []
     compare(block(steps=(10, 5, 5), every=10), progress=lambda backend, steps: told.append((backend, steps)))
-    assert [backend for n, (backend, _) in enumerate(told) if told[n - 1][0] != backend] == [*COMPARED, "ranges"]
+    assert [backend for n, (backend, _) in enumerate(told) if told[n - 1][0] != backend] == [
+        *compared_backends(),
+        "ranges",
+    ]
     assert {(backend, steps) for backend in ("float", "fixed", "rtl") for steps in (0, 20)} <= set(told)
 
 

@@ -1,0 +1,94 @@
+"""A backend: one way to compute a scene, as one object with its words, its options and its machine."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, ClassVar
+
+from golden.datapath.image import Image
+from sim.backends.machine import Machine
+from sim.backends.witness import Witness
+from sim.encode.encode import EncodedScene
+
+
+@dataclass(frozen=True)
+class Option:
+    """An option on the command line that belongs to a backend; its value is None unless it is given.
+
+    ``keywords`` are further arguments of `argparse.ArgumentParser.add_argument`.
+    """
+
+    name: str
+    help: str
+    keywords: Mapping[str, Any] = field(default_factory=dict)
+
+    def add_to(self, parser: ArgumentParser, owner: str = "") -> None:
+        """Add the option to a command; ``owner`` stands in front of its help."""
+        parser.add_argument(f"--{self.name}", help=f"{owner}{self.help}", **self.keywords)
+
+
+@dataclass(frozen=True)
+class Backend(ABC):
+    """One way to compute a scene. The fields of an instance are its settings.
+
+    A backend also has ``open(...)``, a context manager that gives the machine: a `sim.backends.machine.Machine` for an
+    `sim.encode.encode.EncodedScene` where it computes ``integers`` (`IntegerBackend`), else a
+    `sim.backends.machine.FloatMachine` for a scene.
+
+    Attributes
+    ----------
+    name : str
+        What ``--backend`` and `sim.run.run` call it.
+    words : str
+        What the report calls it.
+    summary : str
+        What the help of ``--backend`` says of it.
+    integers : bool
+        Whether it computes in the circuit's integers.
+    compared : bool
+        Whether it takes part in a comparison: it then has to run everywhere, without a device.
+    options : tuple of Option
+    """
+
+    name: ClassVar[str]
+    words: ClassVar[str]
+    summary: ClassVar[str]
+    integers: ClassVar[bool]
+    compared: ClassVar[bool] = False
+    options: ClassVar[tuple[Option, ...]] = ()
+
+    @classmethod
+    def from_options(cls, args: Namespace, out: Path) -> Backend:
+        """Return the backend that the command line asks for; ``out`` is the folder that the run is written to."""
+        return cls()
+
+    @classmethod
+    def settings(cls) -> set[str]:
+        """Return the names of its settings."""
+        return {setting.name for setting in fields(cls)}
+
+    def check(self) -> None:  # noqa: B027
+        """Raise `InputError` for settings that can't be used, before anything is run or written."""
+
+
+@dataclass(frozen=True)
+class IntegerBackend(Backend):
+    """A backend that computes in the circuit's integers."""
+
+    integers = True
+
+    @abstractmethod
+    def open(self, encoded: EncodedScene) -> AbstractContextManager[Machine]:
+        """Return a context manager that gives a machine at the scene's start and closes it."""
+
+    def check_room(self, encoded: EncodedScene) -> None:
+        """Raise `InputError` for a scene that is too large."""
+
+    def witness(self, image: Image) -> Witness | None:
+        """Return what computes single steps again, if its machine has to be checked so."""
+        return None
