@@ -1,4 +1,4 @@
-"""Small objects for the tests of the integer model: sensible ones of every preset, and images of random integers."""
+"""Small objects for the tests of the integer model: realistic ones of every preset, and images of random integers."""
 
 import numpy as np
 from golden_objects import phase, scene
@@ -25,13 +25,14 @@ SPACING = 0.0125  # m
 
 
 def irregular(nodes, rng) -> Mesh:
-    """A grid of so many nodes an axis whose nodes all lie anywhere near their places."""
+    """Return a grid with so many nodes an axis, each moved at random near its place."""
     grid = (rectangle if len(nodes) == 2 else box)(nodes, tuple(SPACING * (n - 1) for n in nodes))
     return Mesh(grid.points + rng.uniform(-0.15, 0.15, grid.points.shape) * SPACING, grid.cells, grid.edges)
 
 
 def pressed(mesh, materials, steps, depth=0.05, edge_material=0, let_go=1):
-    """Pressed by that part of its size for a third of the steps, held for a third, let go for ``let_go`` thirds."""
+    """Return a scene: pressed by part of its size for a third of the steps, held for a third, let go for ``let_go``
+    thirds."""
     low, high = mesh.points[:, -1] < SPACING / 2, mesh.points[:, -1] > mesh.points[:, -1].max() - SPACING / 2
     third = steps // 3
     down = np.zeros(mesh.dim)
@@ -45,7 +46,7 @@ def pressed(mesh, materials, steps, depth=0.05, edge_material=0, let_go=1):
 
 
 def random_raw(rng, q: Q, shape=()):
-    """Integers of a format: half of them anywhere, a quarter small, a quarter at its ends and around zero."""
+    """Return integers of a format: half of them anywhere, a quarter small, a quarter at its ends and around zero."""
     anywhere = rng.integers(q.raw_min, q.raw_max, shape, endpoint=True)
     small = anywhere >> rng.integers(0, q.width, shape)
     corners = [c for c in (q.raw_min, q.raw_min + 1, -1, 0, 1, q.raw_max - 1, q.raw_max) if c >= q.raw_min]
@@ -57,10 +58,10 @@ def random_record(rng, record: dict[str, Q], shape=()):
     return {name: random_raw(rng, q, shape) for name, q in record.items()}
 
 
-def random_image(rng, fmt=None, nodes=12, edges=60, materials=8, tables=3, lawful=True) -> Image:
-    """An image that the circuit accepts and no scene makes: nearly everything in it saturates something.
+def random_image(rng, fmt=None, nodes=12, edges=60, materials=8, tables=3, true_inverse=True) -> Image:
+    """Return an image that the circuit accepts and no scene makes: nearly everything in it saturates something.
 
-    Unless ``lawful`` its table of 1 / sqrt(q) is random as well, half of it as large as can be.
+    Unless ``true_inverse``, its table of 1 / sqrt(q) is random as well, half of it as large as possible.
     """
     fmt = fmt or Formats()
     ends = rng.integers(nodes, size=(edges, 2))
@@ -86,7 +87,7 @@ def random_image(rng, fmt=None, nodes=12, edges=60, materials=8, tables=3, lawfu
         damper=random_record(rng, records.damper_word(fmt), (tables, 1 << fmt.damper_index.width)),
     )
     image.x[0] = image.x[1]  # edges of no length
-    if not lawful:
+    if not true_inverse:
         word = records.inverse_word(fmt)
         entries = 1 << fmt.inverse_index.width
         large = rng.integers(2, size=entries)

@@ -16,18 +16,18 @@ STATE = "x", "v", "force", "ratio"
 
 
 def circuit(lanes, updates=1, axes=3):
-    """All of as many updates have the same lane, which is compiled once; with two lanes and one update it is the
-    circuit that scenes are run on."""
+    """Return a circuit's parameters. Circuits with the same updates share a lane, which is compiled once; two lanes
+    and one update are the circuit that scenes are run on."""
     return Parameters(lanes=lanes, updates=updates, axes=axes, edges=2048 * lanes)
 
 
 def rtl_machine(image, *, parameters, folder=BUILD, waves=None) -> CircuitMachine:
-    """The simulated circuit loaded with an image."""
+    """Return the simulated circuit, loaded with an image."""
     return CircuitMachine(image, SimulatedCircuit(parameters, folder, waves))
 
 
 def run(loaded, machine):
-    """The states after each phase, nodes and edges in the scene's order."""
+    """Yield the states after each phase, nodes and edges in the scene's order."""
     nodes, edges = ranks(loaded.node_order), ranks(loaded.edge_order)
     for phase in loaded.scene.phases:
         machine.restart(loaded.start(phase, machine.v))
@@ -42,7 +42,7 @@ def assert_same(ours, theirs):
 
 
 def fan(spokes=30) -> Mesh:
-    """A hub that every edge but those of the rim meets."""
+    """Return a wheel: every edge but those of the rim meets the hub."""
     angle = np.arange(spokes) * 2 * np.pi / spokes
     rim = np.stack([np.cos(angle), np.sin(angle)], 1) * 0.04
     points = np.concatenate([[[0, 0]], rim]) + [0, 0.04]
@@ -61,7 +61,7 @@ def scene(name, rng, steps):
 
 
 def renumbered(loaded, order):
-    """The same object; its node n is what was node ``order[n]``."""
+    """Return the same object with node ``order[n]`` as its node n."""
     image = loaded.image
     mass = {name: values[order] for name, values in image.inverse_mass.items()}
     moved = {name: getattr(image, name)[order] for name in ("x", "v", "load")}

@@ -26,7 +26,7 @@ MESHES = {2: mesh.rectangle((4, 3), (0.1, 0.08)), 3: mesh.box((3, 3, 3), (0.1, 0
 
 
 def block(material="rheological", dim=2, steps=(40, 20, 30), every=6, **kwargs):
-    """A block pressed by a tenth of its height, held and let go."""
+    """Return a block pressed by a tenth of its height, held and let go."""
     m = MESHES[dim]
     depth = np.ptp(m.points[:, -1]) / 10
     phases = objects.press_hold_release(m, depth, (steps[0], DT), *steps[1:])
@@ -52,8 +52,7 @@ class Standin(Machine):
 
 
 def in_place_of_the_circuit(machine=Standin):
-    """A backend to register in place of `sim.backends.rtl.RtlBackend`; it remembers what it was asked for in
-    ``asked``."""
+    """Return a backend to register in place of `sim.backends.rtl.RtlBackend`, which keeps its settings in ``asked``."""
 
     class StandinBackend(RtlBackend):
         asked: ClassVar[list] = []

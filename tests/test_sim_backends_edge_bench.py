@@ -33,7 +33,7 @@ def bench():
 
 
 class Run:
-    """One batch through model and circuit: ``results`` and ``faults`` of each, and what it was made of."""
+    """A batch of edges through model and circuit, with ``results`` and ``faults`` of each."""
 
     def __init__(self, bench, rng, n, gaps, count_limits=False):
         self.bench, graph = bench, bench.datapath.graph
@@ -52,7 +52,7 @@ class Run:
         self.expected_faults = self._expected_faults()
 
     def _expected_faults(self):
-        """The fault port's bits in each cycle: of several edges, as their operations are at different depths."""
+        """Return the fault port's bits in each cycle, of several edges: their operations lie at different depths."""
         word, datapath = np.zeros_like(self.faults), self.bench.datapath
         for node, name, mask in self.model.faults():
             when = self.cycle[mask] + datapath.schedule.cycle[node] + FAULT_LATENCY
@@ -61,7 +61,7 @@ class Run:
         return word
 
     def differences(self) -> list[str]:
-        """A line for everything in which the circuit differs from the model."""
+        """Return a line for each quantity in which the circuit differs from the model."""
         wrong = [
             f"{name} of edge {row} is {self.results[row, column]}, not {self.expected[row, column]}"
             for row, column in np.argwhere(self.results != self.expected)[:5]
@@ -72,7 +72,7 @@ class Run:
         return wrong
 
     def corners(self) -> Counter:
-        """How many edges are exactly where the datapath decides."""
+        """Return the number of edges that lie exactly on each of the datapath's decisions."""
         m, inputs = self.model, self.inputs
         end = 1 << FORMATS.damper_index.width + FORMATS.damper_fraction.width
         table = ~m["below"].astype(bool) & m["between"].astype(bool)
@@ -108,7 +108,7 @@ class Run:
 
 
 def hashes(rows):
-    """(n,) of rows of integers: rows with different hashes are different rows."""
+    """Return (n,) a hash of each row of integers: rows with different hashes differ."""
     factors = np.random.default_rng(1).integers(1, 1 << 63, rows.shape[1], dtype=np.uint64) | np.uint64(1)
     mixed = (rows.astype(np.uint64) * factors).sum(axis=1, dtype=np.uint64)
     return (mixed ^ mixed >> np.uint64(29)) * np.uint64(0xBF58476D1CE4E5B9)
@@ -154,7 +154,7 @@ def test_one_wrong_bit_is_reported(bench, rng):
 
 
 def test_one_wrong_bit_of_an_operand_is_noticed(bench, rng):
-    """The circuit is given one edge with another integer than the model's: its own results differ, no others."""
+    """The circuit gets one edge with another integer than the model's: only that edge's results differ."""
     run = Run(bench, rng, 2000, gaps=0)
     row = int(np.flatnonzero((run.expected[:, :3] != 0).all(axis=1))[0])
     run.vectors[row, bench.inputs.index("j_x_x")] ^= 1 << FORMATS.position.width - 2
@@ -163,7 +163,7 @@ def test_one_wrong_bit_of_an_operand_is_noticed(bench, rng):
 
 
 def test_an_edge_behind_a_gap_is_not_disturbed_by_what_stands_in_it(bench, seed):
-    """The same edges, close together and far apart: the same results."""
+    """The same edges give the same results close together and far apart."""
     close, apart = (Run(bench, np.random.default_rng(seed), 500, gaps) for gaps in (0, 0.9))
     assert close.differences() == [] and apart.differences() == []
     assert np.array_equal(close.results, apart.results)

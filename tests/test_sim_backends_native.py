@@ -35,7 +35,7 @@ def test_every_preset_gives_the_same_bits(material, nodes, rng):
 
 def random_images(seed):
     for number in range(6):
-        yield random_image(np.random.default_rng([seed, number]), lawful=number % 2 == 0)
+        yield random_image(np.random.default_rng([seed, number]), true_inverse=number % 2 == 0)
 
 
 def test_random_images_give_the_same_bits_and_the_same_faults(seed):

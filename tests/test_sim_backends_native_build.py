@@ -1,4 +1,4 @@
-"""Compiling: once for each text, by as many processes as like to, and a message when it can't be done."""
+"""sim.backends.native_build: each text is compiled once, by several processes too, and failures are explained."""
 
 import ctypes
 import multiprocessing

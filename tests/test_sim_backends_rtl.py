@@ -24,7 +24,7 @@ LANES = 1, 2, 4
 
 @pytest.fixture
 def simulated():
-    """Makes machines in the simulated circuit, and closes them."""
+    """Return a function that makes machines in the simulated circuit; they are closed in the end."""
     machines = []
 
     def make(image, parameters, **kwargs):
@@ -49,7 +49,7 @@ def test_an_object_of_all_materials_has_the_models_bits(name, lanes, rng, simula
 
 @pytest.mark.parametrize("lanes", LANES)
 def test_no_order_of_edges_or_nodes_changes_a_bit(lanes, rng, simulated):
-    """Edges in the reverse of the fast order, by chance, by first ends; nodes numbered by chance and backwards."""
+    """Edges in reverse, random and by their first ends; nodes numbered at random and in reverse."""
     for name in ("2-D", "3-D", "fan"):
         one = scene(name, rng, 30)
         mesh, edges = one.mesh, len(one.mesh.edges)
@@ -98,7 +98,7 @@ def test_a_run_in_pieces_is_the_same_run_and_its_cycles_add_up(rng, simulated):
 
 
 def test_after_a_reset_at_any_cycle_the_machine_says_so_and_is_loaded_again(rng, simulated):
-    """500 times, in the middle of a run and around its beginning; what is loaded then runs as ever."""
+    """500 resets in the middle of a run and around its beginning; an object loaded afterwards runs as ever."""
     loaded = encode(scene("2-D", rng, 30))
     expected = NativeMachine(loaded.image)
     expected.step(1)
@@ -120,7 +120,7 @@ def test_after_a_reset_at_any_cycle_the_machine_says_so_and_is_loaded_again(rng,
 
 
 def test_a_run_that_is_stopped_ends_with_a_step_and_goes_on_with_the_same_bits(rng, simulated):
-    """At any cycle of it, the same object all the while: no state is written back between the runs."""
+    """Resets at any cycle of a run, with one object: no state is written back between the runs."""
     loaded = encode(scene("2-D", rng, 30))
     model, machine, map_ = NativeMachine(loaded.image), simulated(loaded.image, circuit(2)), Map(circuit(2))
     ends, circuit_ = Wavefront(loaded.image, circuit(2)).run(20), machine.circuit

@@ -1,4 +1,4 @@
-"""How fast the circuit is simulated: what people wait for who develop on it."""
+"""The speed of the simulated circuit, which everybody who develops it waits for."""
 
 from statistics import median
 from time import process_time

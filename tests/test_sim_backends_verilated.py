@@ -1,4 +1,4 @@
-"""Verilog to shared libraries: built once, found again, and what is missing or broken said in a line."""
+"""sim.backends.verilated: libraries are built once and found again; missing or broken tools are named in a line."""
 
 import ctypes
 import shutil
@@ -23,7 +23,7 @@ SHIM = """#include "Vquarter.h"
 extern "C" int quarter(int x) { VerilatedContext context; Vquarter top{&context}; top.x = x; top.eval(); return top.y; }
 """
 TINY = Parameters(lanes=1, nodes=12, edges=60, materials=8, tables=3)
-# A circuit that answers everything with 0, and is busy for 40 cycles when it is to run: quickly built
+# A circuit that is built quickly: it answers 0 to everything and is busy for 40 cycles in a run
 LANE = """
 module rheogate_lane(input clk, input start, output reg [5:0] left = 0);
     always @(posedge clk) left <= start ? 40 : left == 0 ? 0 : left - 1;

@@ -1,4 +1,4 @@
-"""python -m sim: what it writes, what it refuses, and its exit codes."""
+"""python -m sim: the files that it writes, its messages and its exit codes."""
 
 import json
 import subprocess
@@ -40,7 +40,7 @@ def scene(tmp_path):
 
 
 def lines(capsys):
-    """What was said on stdout and on stderr."""
+    """Return the lines on stdout and on stderr."""
     said = capsys.readouterr()
     return said.out.splitlines(), said.err.splitlines()
 
@@ -151,7 +151,7 @@ def test_scripts_get_the_file_itself(command, file, circuit, scene, tmp_path, ca
 
 
 def test_report(circuit, scene, tmp_path, capsys, monkeypatch):
-    """The page of runs that are there is that of a comparison, but for how long it took."""
+    """The page of existing runs is that of a comparison, except for the time it took."""
     monkeypatch.setattr(batch, "cores", lambda: 1)
     runs, pages = [], {}
     for backend in ("fixed", "rtl"):
@@ -188,7 +188,7 @@ def test_a_run_that_saturated_fails_in_the_report_too(tmp_path, capsys, monkeypa
     assert any(line.startswith("error: block: saturated: ") for line in err)
 
 
-def test_what_is_no_run_is_refused_before_anything_is_written(tmp_path, capsys):
+def test_a_folder_without_a_run_is_refused_before_anything_is_written(tmp_path, capsys):
     nothing = tmp_path / "nothing"
     refused(
         ["report", str(nothing), "--out", str(tmp_path / "page")],
@@ -245,7 +245,7 @@ def test_an_interrupt_is_quiet(scene, tmp_path, capsys, monkeypatch):
 
 
 def test_the_command_itself(scene, tmp_path):
-    """Once through the interpreter: exit codes and streams are the shell's."""
+    """Once through the interpreter, with real exit codes and streams."""
 
     def command(*arguments):
         return subprocess.run([sys.executable, "-m", "sim", *arguments], cwd=ROOT, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""python -m sim: what it refuses, in one line, before anything runs."""
+"""python -m sim: mistakes are refused in one line, before anything runs."""
 
 import json
 from pathlib import Path

@@ -1,5 +1,4 @@
-"""sim.encode.units, sim.encode.encode and sim.encode.limits: SI numbers survive the way into the circuit's integers and
-back."""
+"""sim.encode.units, sim.encode.encode and sim.encode.limits: SI numbers survive being encoded and decoded."""
 
 import golden_objects as objects
 import numpy as np
@@ -148,7 +147,7 @@ def test_the_image_is_in_this_order():
 
 
 def test_any_order_of_nodes_gives_the_same_bits(rng):
-    """As long as an edge keeps its direction: half-way cases are rounded up, not away from zero."""
+    """Only while an edge keeps its direction: ties are rounded up, not away from zero."""
     images = [encode(mixed()).image for _ in range(2)]
     place = rng.permutation(12)  # node n becomes node place[n]
     other = images[1]
@@ -168,7 +167,7 @@ def test_any_order_of_nodes_gives_the_same_bits(rng):
 
 
 def test_a_renumbered_scene_gives_the_same_motion(rng):
-    """Not the same bits: an edge may be walked from its other end, and then rounds half-way cases otherwise."""
+    """Not the same bits: an edge may be taken from its other end, where its ties round the other way."""
     scene = block("rheological-force", mass=0.01)
     place = rng.permutation(12)
     points = np.empty_like(scene.mesh.points)

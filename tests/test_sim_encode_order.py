@@ -8,7 +8,7 @@ from sim.encode.order import order, ranks, reach, sweeps
 
 
 def ring(n, thick):
-    """A bent strip that no axis follows."""
+    """Return a bent strip that no axis follows."""
     strip = mesh.rectangle((n, thick), (5.0, 1.0))
     angle, radius = strip.points[:, 0], 3 + strip.points[:, 1]
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1), strip.edges
@@ -24,7 +24,7 @@ OBJECTS = {
 
 @pytest.mark.parametrize("name", OBJECTS)
 def test_order(name, rng):
-    """Permutations; edges by their higher node, then the lower; no sweep is shorter, whatever the numbers were."""
+    """Both are permutations; edges go by their higher node, then the lower; no sweep has a shorter reach."""
     points, edges = OBJECTS[name]()
     n, shuffle = len(points), rng.permutation(len(points))
     points, edges = points[np.argsort(shuffle)], rng.permutation(np.sort(shuffle[edges], axis=1))
@@ -41,7 +41,7 @@ def test_order(name, rng):
 
 
 def test_a_sweep_along_the_grid_touches_two_of_its_lines():
-    """An edge, the rest of its line and the next one: 9 nodes of at most three edges to lower ones, and a corner."""
+    """The reach spans an edge, the rest of its line and the next line: 9 nodes with three edges to lower ones each."""
     points, edges = OBJECTS["block"]()
     node_order, edge_order = order(points, edges)
     assert reach(ranks(node_order)[edges[edge_order]]) == 28

@@ -1,5 +1,5 @@
-"""Other materials in the middle of a run of the simulated circuit: the same bits as the integer model that begins
-there, no jump in force, and what comes after is the new material's."""
+"""A switch of materials in a run of the simulated circuit: the same bits as an integer model that begins there, no jump
+in force, and the new material's behaviour from there on."""
 
 import dataclasses
 
@@ -16,7 +16,7 @@ from sim.encode.switch import switch
 
 
 def pressed(name, steps=60):
-    """(what the circuit was loaded with, the circuit with a block that is being held)"""
+    """Return the encoded scene and the circuit, in which a block is being held."""
     loaded = encode(block(name, steps=(40, 40, 40)))
     machine = rtl_machine(loaded.image, parameters=circuit(2))
     machine.step(40)

@@ -28,7 +28,7 @@ MATERIALS = {
 
 
 def pressed(name, material, seed):
-    """A body whose lowest tenth is fixed: pressed from above by a sixth, held and let go."""
+    """Return a body whose lowest tenth is fixed: pressed from above by a sixth, held and let go."""
     body = mesh.filled(name.partition("-")[0], **BODIES[name], seed=seed)
     up = body.points[:, -1] - body.points[:, -1].min()
     low, high = up <= 0.1 * up.max(), up >= 0.9 * up.max()
@@ -47,7 +47,7 @@ def pressed(name, material, seed):
 
 
 def apart(one):
-    """Largest distance between a position in integers and in float64, by the object's size, and how far it moved."""
+    """Return the largest distance of a node in integers from its place in float64, and its motion, by object's size."""
     float64, fixed = (run(one, backend) for backend in ("float", "fixed"))
     assert fixed.faults == {}
     distance = np.linalg.norm(fixed.trajectory.x - float64.trajectory.x, axis=2).max() / one.size

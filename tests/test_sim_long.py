@@ -1,4 +1,4 @@
-"""A million steps of the integer model: what must not move doesn't, and what integers add up to is known."""
+"""A million steps of the integer model: objects at rest stay at rest, and rounding errors add up as predicted."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ def test_a_free_object_of_all_presets_at_rest_does_not_move_by_a_bit_in_a_millio
 @pytest.mark.parametrize("nodes", [(4, 3), (3, 2, 2)], ids=["2-D", "3-D"])
 @pytest.mark.parametrize("material", MATERIALS)
 def test_a_step_leaves_any_object_at_rest_as_it_is(material, nodes, rng):
-    """As its state is the same after one step, it is the same after any number."""
+    """The state is the same after one step, and therefore after any number."""
     for _ in range(30):
         image = at_rest((MATERIALS[material],), rng, nodes)
         machine = NativeMachine(image)
@@ -54,7 +54,7 @@ def test_an_object_in_uniform_motion_keeps_its_velocity_to_the_bit(rng):
 
 @pytest.mark.parametrize("material", ["plastic", "plastic-force"])
 def test_a_pressed_and_released_plastic_block_stays_for_a_million_steps(material, rng):
-    """Held until its inner nodes have come to rest; what is left of their velocities rounds to no displacement."""
+    """The object is held until its inner nodes are at rest: their last velocities round to no displacement."""
     block = pressed(irregular((3, 3), rng), MATERIALS[material], 3000, depth=0.1)
     loaded = encode(block)
     machine = NativeMachine(loaded.image)
@@ -87,7 +87,7 @@ def test_the_ratio_of_a_loaded_viscoelastic_block_does_not_drift(rng):
 
 
 def mean_velocity(machine):
-    """(3,) last places of a velocity, weighted with the machine's own masses."""
+    """Return (3,) the sum of the velocities in LSBs, weighted with the machine's own masses."""
     mass = np.ldexp(1.0, machine.image.inverse_mass["shift"]) / machine.image.inverse_mass["value"]
     return mass @ machine.v / mass.sum()
 

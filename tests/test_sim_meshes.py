@@ -20,7 +20,7 @@ CIRCUITS = [(lanes, updates, axes) for axes in (3, 1) for lanes in (1, 2, 4, 6) 
 
 
 def graded(rng) -> Mesh:
-    """A rectangle whose cells grow from one corner to the other."""
+    """Return a rectangle whose cells grow from one corner to the other."""
     nodes = tuple(int(n) for n in rng.integers(3, 9, 2))
     grid = rectangle(nodes, tuple(SPACING * (n - 1) for n in nodes))
     size = grid.points.max(axis=0)
@@ -28,7 +28,7 @@ def graded(rng) -> Mesh:
 
 
 def disconnected(rng) -> Mesh:
-    """Two to four blocks side by side."""
+    """Return two to four blocks side by side."""
     parts = [irregular(tuple(int(n) for n in rng.integers(2, 5, 2)), rng) for _ in range(rng.integers(2, 5))]
     starts = np.cumsum([0] + [len(part.points) for part in parts])
     points = [part.points + [0.08 * k, 0] for k, part in enumerate(parts)]
@@ -55,7 +55,7 @@ ORDERS = {
 
 
 def image(rng, number):
-    """An object in motion, of all materials, in one of the orders."""
+    """Return an encoded object in motion, of all materials, in one of the orders."""
     kind, order = list(KINDS)[number % len(KINDS)], list(ORDERS)[number // len(KINDS) % len(ORDERS)]
     mesh = KINDS[kind](rng)
     edge_material = rng.integers(len(MATERIALS), size=len(mesh.edges))
@@ -91,7 +91,7 @@ def test_some_meshes(shape, seed):
 @pytest.mark.campaign
 @pytest.mark.parametrize("shape", CIRCUITS)
 def test_three_hundred_meshes(shape, seed):
-    """Forty in each circuit, no two the same."""
+    """Forty objects in each circuit, all different."""
     first = 40 * CIRCUITS.index(shape)
     check(range(first, first + 40), shape, seed)
 
@@ -116,7 +116,7 @@ def test_the_benchmarks_meshes_take_the_cycles_that_it_says(name, updates):
 
 @pytest.mark.parametrize("shape", CIRCUITS)
 def test_every_step_takes_as_long(shape, seed):
-    """Which `Wavefront.per_step` insists on; nothing proves that no list takes turns, so many are tried."""
+    """`Wavefront.per_step` needs steps of equal length; no proof says that all lists have them, so many are tried."""
     parameters = circuit(*shape)
     latencies = Latencies.of(parameters)
     for number in range(20):

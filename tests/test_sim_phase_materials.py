@@ -29,7 +29,7 @@ c2 = 40.0
 
 
 def switching(name="viscoelastic", other="rheological", **kwargs):
-    """A block that becomes another material when it is held."""
+    """Return a block that becomes another material when it is held."""
     scene = block(name, steps=(60, 60, 120), every=1, **kwargs)
     phases = list(scene.phases)
     other = dataclasses.replace(MATERIALS[other], name=scene.materials[0].name)
@@ -92,7 +92,7 @@ def test_an_archive_has_them(tmp_path):
 
 @pytest.mark.parametrize("other", ["rheological", "rheological-force"])
 def test_the_force_does_not_jump(other):
-    """Between two neighbouring steps it changes as little at the switch as before."""
+    """The force changes as little between two steps at the switch as before it."""
     scene = switching(other=other)
     model = Model(scene)
     for _ in range(scene.phases[0].steps):

@@ -1,4 +1,4 @@
-"""sim.compare and sim.results.comparison: the figures of a comparison, what passes, and many scenes at once."""
+"""sim.compare and sim.results.comparison: the figures of a comparison, its bounds, and many scenes at once."""
 
 import json
 from dataclasses import replace
@@ -53,7 +53,7 @@ def circuit(monkeypatch):
 
 
 class OneBit(Standin):
-    """Differs from the integer model in the last bit of one ratio, from step 5 to step 9 only."""
+    """A circuit that differs from the integer model in the last bit of one ratio, from step 5 to step 9 only."""
 
     done = 0
 
@@ -168,7 +168,7 @@ def test_comparing_tells_how_far_it_is(circuit):
     assert {(backend, steps) for backend in ("float", "fixed", "rtl") for steps in (0, 20)} <= set(told)
 
 
-# how much an object comes back, of which the paper's figures tell: the clay stays, the gel returns
+# the recovery that the paper's figures show: the clay stays pressed, the gel returns
 @pytest.mark.parametrize(
     "material, low, high", [("plastic", -0.01, 0.05), ("viscoelastic", 0.95, 1.05), ("rheological", 0.2, 0.9)]
 )
@@ -214,7 +214,7 @@ def named(name):
 
 
 def count(scene, progress):
-    """Work for a process of its own."""
+    """Return a result from a process of its own."""
     if progress:
         progress("float", scene.steps)
     return scene.name, len(scene.mesh.points)

@@ -1,4 +1,4 @@
-"""The cycle model: what must hold of it without a circuit; that the circuit takes as long is in test_sim_meshes.py."""
+"""sim.results.cycles: properties of the cycle model alone; test_sim_meshes.py compares it with the circuit."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""sim.results.energy: what goes in is what is there and what the dampers turned into heat."""
+"""sim.results.energy: the work put in is the energy in the object plus the heat of the dampers."""
 
 import golden_objects as objects
 import numpy as np
@@ -13,7 +13,7 @@ LINEAR = "viscoelastic", "plastic", "rheological"
 
 
 def heat(scene):
-    """(F,) J that the dampers of an object turned into heat, from their own forces and rates, step by step."""
+    """Return (F,) the heat (J) of an object's dampers, from their own forces and rates, step by step."""
     model, power, total, kept = Model(scene), None, 0.0, [0.0]
     for phase in scene.phases:
         model.begin(phase)
@@ -46,7 +46,7 @@ def test_what_is_missing_has_become_heat(material, dim):
 
 
 def test_the_device_gives_the_nodes_their_speed():
-    """At rest before frame 0, moving at it; stopped by the device when it only holds, whatever was left in them."""
+    """Driven nodes are at rest before frame 0 and move at it; the device takes their energy when it stops them."""
     scene = block("plastic", steps=(20, 5, 5), every=1)
     result, press = energy.energies(scene, run(scene, "float").trajectory), scene.phases[0]
     moving = (press.velocity[press.driven] ** 2).sum(axis=1) @ scene.mass[press.driven] / 2
@@ -65,7 +65,7 @@ def test_heat_does_not_come_back(material):
 
 
 def test_a_load_works_along_its_way():
-    """A constant force on a free object: its work is force times way, and all of it can be found again."""
+    """A constant force on a free object: its work is force times distance, and all of it is accounted for."""
     m = MESHES[2]
     scene = objects.scene(
         m,

@@ -1,4 +1,4 @@
-"""A run as a time series for ParaView: what is in the files is what was run."""
+"""sim.results.export: a time series for ParaView holds the run's own numbers."""
 
 from xml.etree import ElementTree
 
@@ -26,7 +26,7 @@ BALL = changed(
 
 @pytest.fixture(params=["2-D", "3-D"])
 def run(request, tmp_path):
-    """The folder of a run on the integer model, which has no reaction in its first frame."""
+    """Return the folder of a run on the integer model, which has no reaction in its first frame."""
     text = changed(SCENE, GEL, TWO) if request.param == "2-D" else BALL
     assert main(["run", str(written(tmp_path, text)), "--backend", "fixed", "--out", str(tmp_path / "run")]) == 0
     return tmp_path / "run"
@@ -86,7 +86,7 @@ def test_a_frame_is_the_runs(run):
 
 
 def test_a_pressed_edge_pushes(tmp_path):
-    """Squeezed from above, the upright edges push their ends apart: their force is above 0."""
+    """The upright edges of an object pressed from above push their ends apart: their force is above 0."""
     main(["run", str(written(tmp_path, SCENE)), "--backend", "float", "--out", str(tmp_path / "run")])
     main(["export", str(tmp_path / "run"), "--vtu"])
     scene, _, _ = run_folder.load(tmp_path / "run")

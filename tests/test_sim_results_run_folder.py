@@ -1,4 +1,4 @@
-"""What `python -m sim run` leaves is all that is needed to have the run again."""
+"""sim.results.run_folder: the folder of a run holds all that is needed to have the run again."""
 
 from dataclasses import astuple
 from math import inf
@@ -18,7 +18,7 @@ from sim.run import run
 
 @pytest.fixture
 def kept(tmp_path):
-    """The folder of a run of a mesh file's scene of two materials; file and scene are gone."""
+    """Return the folder of a run of a scene with a mesh file and two materials; both files are gone."""
     grid = rectangle((3, 3), (200.0, 100.0))
     meshio.write_points_cells(tmp_path / "part.vtu", np.pad(grid.points, ((0, 0), (0, 1))), [("triangle", grid.cells)])
     text = changed(SCENE, MESH, 'mesh = { kind = "file", file = "part.vtu", scale = 1e-3 }')

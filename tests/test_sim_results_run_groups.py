@@ -1,5 +1,5 @@
-"""sim.results.run_groups: runs taken up from their folders bit by bit; what can't be of a run, or not of one scene, is
-refused."""
+"""sim.results.run_groups and run_folder.load_result: runs are loaded bit by bit; folders that no run can have left, or
+that don't belong together, are refused."""
 
 import json
 import re
@@ -20,7 +20,7 @@ SOLID = replace(block("plastic", 3, steps=(10, 5, 10)), name="brick")
 
 
 def kept(folder, scene=SCENE, backend="fixed"):
-    """A run in a folder; its result."""
+    """Run a scene, keep the run in a folder and return the result."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(BACKENDS, RtlBackend.name, in_place_of_the_circuit())
         result = run(scene, backend, engine="numpy")
@@ -101,7 +101,7 @@ def test_runs_are_grouped_by_scene(tmp_path):
 
 
 def refused(folders, message):
-    """`message` follows "RUN must be ", and names the folders as a and b."""
+    """Check the message: "RUN must be " and ``message``, in which {a} and {b} stand for the folders."""
     message = message.format(**{folder.name: folder for folder in folders})
     message = f"RUN must be {message}"
     with pytest.raises(InputError, match=f"^{re.escape(message)}$"):

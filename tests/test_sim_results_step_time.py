@@ -1,4 +1,4 @@
-"""sim.results.step_time: how long a step takes, from a run's own count and on boards whose clock is known."""
+"""sim.results.step_time: the time of a step, from a run's own count and on boards whose clock is known."""
 
 import json
 import re

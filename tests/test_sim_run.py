@@ -1,4 +1,4 @@
-"""sim.run: one face for float64, integer model and circuit; the frames it keeps, and what it refuses."""
+"""sim.run: one interface to float64, integer model and circuit; the frames that it keeps, and its refusals."""
 
 from pathlib import Path
 
@@ -143,7 +143,7 @@ def test_the_circuit_is_run_like_the_integer_model(monkeypatch, tmp_path):
 
 
 class Wrong(Machine):
-    """From step 15 on, one bit of a quantity is not what it must be."""
+    """A machine with one wrong bit in a quantity from step 15 on."""
 
     done = 0
 

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.campaign
 
 @pytest.fixture(scope="module")
 def fixed():
-    """The integer model's run of a scene, computed once."""
+    """Return the integer model's run of a scene, computed once."""
     results = {}
 
     def of(path):

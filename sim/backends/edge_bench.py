@@ -1,4 +1,4 @@
-"""The edge processor alone, its emitted Verilog under Verilator: edges by the batch, one a cycle."""
+"""A test bench of the edge processor alone: its Verilog under Verilator, batches of edges, one a cycle."""
 
 import ctypes
 from pathlib import Path
@@ -18,26 +18,26 @@ SHIM = Path(__file__).with_name("edge_bench.cpp")
 class EdgeBench:
     """A simulated `hw.machine.edge.EdgeProcessor`.
 
-    Each input is given in the cycle in which the schedule wants it and is noise in all others; each output is taken in
-    its cycle.
+    Each input has its value in the cycle in which the schedule samples it and noise in all others; each output is
+    sampled in its cycle.
 
     Parameters
     ----------
     datapath : EdgeDatapath
     folder : Path
-        Where compiled circuits are kept.
+        Folder of the compiled circuits.
 
     Attributes
     ----------
     inputs, outputs : list of str
-        Columns of vectors and results.
+        Names of the columns of vectors and of results.
     """
 
     def __init__(self, datapath: EdgeDatapath, folder: Path):
         self.datapath = datapath
         arrival, graph = datapath.schedule.arrival, datapath.graph
         inputs = {name: (node.fmt.width, arrival.get(name, 0)) for name, node in graph.inputs.items()}
-        del inputs["velocity_shift"]  # the same for a whole batch
+        del inputs["velocity_shift"]  # constant during a batch
         outputs = {name: (node.fmt.width, datapath.ready(name)) for name, node in graph.outputs.items()}
         self.inputs, self.outputs = list(inputs), list(outputs)
         self._drain = max(datapath.schedule.latency + FAULT_LATENCY, *map(datapath.ready, graph.outputs)) + 1
@@ -55,6 +55,7 @@ class EdgeBench:
         self._handle = shared.bench_new()
 
     def close(self):
+        """Free the simulated edge processor."""
         if self._handle:
             self._shared.bench_delete(self._handle)
             self._handle = None
@@ -67,20 +68,20 @@ class EdgeBench:
             self._shared.bench_table(self._handle, half, len(packed), packed.ctypes.data)
 
     def run(self, vectors: np.ndarray, velocity_shift: int, entry: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Edges through the pipeline.
+        """Send edges through the pipeline.
 
         Parameters
         ----------
         vectors : (n, inputs) int64
             Raw integers.
         entry : (cycles,) int64
-            The row that enters in each cycle, or -1; each row once.
+            The row of ``vectors`` that enters in each cycle, or -1; each row once.
 
         Returns
         -------
         results : (n, outputs) int64
         faults : (cycles + drain,) uint32
-            What the fault port says in each cycle, until the pipeline is empty.
+            The fault port in each cycle, until the pipeline is empty.
         """
         vectors = np.ascontiguousarray(vectors, np.int64)
         assert vectors.shape[1] == len(self.inputs)

@@ -1,4 +1,4 @@
-"""Compiles a C++ program into a shared library, once for each source text and compiler."""
+"""Compile a C++ program into a shared library, once for each source text and compiler."""
 
 import hashlib
 import os
@@ -15,16 +15,16 @@ FLAGS = "-std=c++17", "-O2", "-shared", "-fPIC", "-fwrapv"
 
 
 def library(files: dict[str, str], main: str, folder: Path = FOLDER) -> Path:
-    """The library of the program whose texts are ``files``, of which ``main`` is compiled.
+    """Return the library of a program whose files are ``files``, by name, of which ``main`` is compiled.
 
-    Processes that build the same one at the same time don't disturb one another: each renames a finished file.
+    Processes may build the same library at the same time: each renames a finished file.
 
     Raises
     ------
     InputError
         If there is no C++ compiler.
     RuntimeError
-        If it refuses the program.
+        If the compiler refuses the program.
     """
     compiler = shutil.which("c++")
     if not compiler:

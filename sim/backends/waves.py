@@ -1,4 +1,4 @@
-"""Whether waveforms can be recorded on this machine."""
+"""Formats of waveforms, and the check that this machine can record them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from golden.support.errors import InputError
 
 FORMATS = "vcd", "fst"
 HEADERS = {"vcd": {}, "fst": {"zlib.h": "zlib1g-dev", "lz4.h": "liblz4-dev"}}
-"""What a format's writer includes, and Debian's package that has it."""
+"""Headers that a format's writer includes, each with Debian's package of it."""
 
 
 def check(path: Path) -> None:
-    """Raise `InputError` for a format that isn't known or that the C++ compiler lacks a library for."""
+    """Raise `InputError` for an unknown format, or one whose libraries the C++ compiler lacks."""
     form = path.suffix[1:]
     if form not in FORMATS:
         raise InputError(f"waves must be a file ending in {' or '.join(f'.{f}' for f in FORMATS)}, not {path.name}")
@@ -26,7 +26,7 @@ def check(path: Path) -> None:
 
 
 def found(header: str) -> bool:
-    """Whether the C++ compiler finds a header. A missing compiler is reported by who compiles."""
+    """Return whether the C++ compiler finds a header; True without a compiler, which is reported when it is used."""
     try:
         return not subprocess.run(
             ["c++", "-E", "-x", "c++", "-include", header, "/dev/null"],

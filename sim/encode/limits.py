@@ -1,4 +1,4 @@
-"""Whether a scene's numbers have a place in the circuit's: refused by name before anything runs."""
+"""The limits of the circuit's numbers: a scene beyond them is refused, by name, before anything runs."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def encode(scene: Scene, edge_order: np.ndarray | None = None) -> EncodedScene:
 
 
 def later(encoded: EncodedScene) -> list[EncodedScene]:
-    """The object with the materials that each phase brings, as it would be at its start."""
+    """Return the scene with the materials that each later phase brings, as it would be at its own start."""
     return [prepared(encoded, materials) for materials in encoded.scene.material_sets[1:]]
 
 
 def _check_speed(scene: Scene) -> None:
-    """A node must not go further in a step than the displacement format reaches, whatever the velocity's unit."""
+    """Raise `InputError` where a node would move further in a step than the displacement format reaches."""
     limit = 2.0 ** (Formats().displacement.int_bits - 1) * scene.size / scene.dt
     for n, phase in enumerate(scene.phases):
         fastest = np.abs(phase.velocity[phase.driven]).max(initial=0)

@@ -1,4 +1,4 @@
-"""The order in which the circuit works: it changes the speed, never the result."""
+"""The order in which the circuit works through nodes and edges: it changes the speed, never the result."""
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -6,12 +6,12 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 
 def order(points: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(node order, edge order): the shortest of several sweeps over the object, edges by their higher node.
+    """Return (node order, edge order): the sweep with the shortest reach of several, edges by their higher node.
 
-    An edge goes again when the last edges of its nodes have been summed and the nodes updated. A stage therefore takes
-    as long as the circuit's loop and the longest way in the list from an edge to the last one of its nodes (`reach`);
-    a sweep's is what its front touches. Swept are the levels of reverse Cuthill-McKee, which follow a bent object, and
-    each of the axes, whose planes are smaller in a straight one.
+    An edge is issued again when all edges of its nodes have been summed and the nodes updated. A stage therefore takes
+    as long as the circuit's loop and the longest distance in the list from an edge to the last one that shares a node
+    with it (`reach`), which is the size of the sweep's front. The sweeps are the levels of reverse Cuthill-McKee,
+    which follow a bent object, and one along each axis, whose planes are smaller in a straight object.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def order(points: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def sweeps(points: np.ndarray, edges: np.ndarray):
-    """Orders of nodes: along the axes what is on one plane goes by the next axis."""
+    """Yield orders of nodes: reverse Cuthill-McKee, then along each axis, within a plane along the next axis."""
     ones = np.ones(len(edges), np.int8)
     graph = coo_array((ones, (edges[:, 0], edges[:, 1])), shape=(len(points), len(points))).tocsr()
     yield np.asarray(reverse_cuthill_mckee(graph + graph.T, symmetric_mode=True), np.int64)
@@ -36,7 +36,7 @@ def sweeps(points: np.ndarray, edges: np.ndarray):
 
 
 def reach(edges: np.ndarray) -> int:
-    """The longest way in a list of edges from one to the last that shares a node with it."""
+    """Return the longest distance in a list of edges from one to the last that shares a node with it."""
     places = np.arange(len(edges))
     last = np.zeros(edges.max() + 1, np.int64)
     np.maximum.at(last, edges, places[:, None])
@@ -44,6 +44,7 @@ def reach(edges: np.ndarray) -> int:
 
 
 def ranks(order: np.ndarray) -> np.ndarray:
+    """Return the rank of each entry of a permutation: its inverse."""
     inverse = np.empty_like(order)
     inverse[order] = np.arange(len(order))
     return inverse

@@ -1,4 +1,4 @@
-"""Another material for an object that a circuit has, between two steps: without a new bitstream or a jump in force."""
+"""A switch of materials between two steps: without a new bitstream and without a jump in force."""
 
 from __future__ import annotations
 
@@ -15,19 +15,18 @@ from sim.encode.units import largest_share, trials_of
 
 
 def switch(encoded: EncodedScene, machine, materials: tuple[Material, ...]) -> EncodedScene:
-    """Give the machine, which is between two steps, the scene's materials anew, one for each it had.
+    """Give a machine between two steps new materials, one for each that the scene has.
 
     Parameters
     ----------
     encoded : EncodedScene
-        What the machine was loaded with; stays as it is.
-    machine : sim.backends.circuit.CircuitMachine
-        Or any other with ``x, v, ratio`` and ``take(image)``.
+        The scene that the machine was loaded with; stays as it is.
+    machine : sim.backends.machine.Machine
 
     Returns
     -------
     EncodedScene
-        What the machine has now: the same object, units and order.
+        The scene as the machine has it now: the same object, units and order.
 
     Raises
     ------
@@ -44,15 +43,15 @@ def switch(encoded: EncodedScene, machine, materials: tuple[Material, ...]) -> E
             continue
         edges = image.edge_material == number
         ratio, natural = switched(old, new, *_state(encoded, machine, edges))
-        for name, values, q in (("ratio", ratio, fmt.ratio), ("length", natural / encoded.units.size, fmt.length)):
-            raw = np.floor(np.ldexp(values, q.frac_bits) + 0.5).astype(np.int64)
-            getattr(image, name)[edges] = raw
+        length = natural / encoded.units.size
+        for words, values, q in ((image.ratio, ratio, fmt.ratio), (image.length, length, fmt.length)):
+            words[edges] = np.floor(np.ldexp(values, q.frac_bits) + 0.5).astype(np.int64)
     machine.take(image)
     return replace(after, image=image)
 
 
 def prepared(encoded: EncodedScene, materials: tuple[Material, ...]) -> EncodedScene:
-    """The object with other materials, as it would be at its start. Raises `InputError` as `switch`."""
+    """Return the scene with other materials, as it would be at its start. Raises `InputError` as `switch`."""
     scene, fmt = replace(encoded.scene, materials=materials), encoded.image.formats
     if len(materials) != len(encoded.scene.materials):
         raise InputError(
@@ -71,7 +70,7 @@ def prepared(encoded: EncodedScene, materials: tuple[Material, ...]) -> EncodedS
 
 
 def _state(encoded: EncodedScene, machine, edges):
-    """l (m), dl/dt (m/s), a and L (m) of some edges, in the circuit's order."""
+    """Return l (m), dl/dt (m/s), a and L (m) of some edges, in the circuit's order."""
     fmt, units, ends = encoded.image.formats, encoded.units, encoded.image.edges[edges].T
     d, w = (
         np.ldexp((raw[ends[1]] - raw[ends[0]]).astype(float), -q.frac_bits) * unit

@@ -15,7 +15,7 @@ from golden.physics.materials import Material
 from golden.physics.scene import Scene
 
 HEADROOM = 4.0
-"""How far the expected velocities and forces may be exceeded before anything saturates."""
+"""Factor by which the expected velocities and forces may be exceeded before anything saturates."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Where the energy of a run is, and the forces of its edges: float64's formulas on the states that were kept."""
+"""The energies of a run and the forces of its edges: float64's formulas on the states that were kept."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run as a time series that ParaView opens: a VTU file for each frame and a collection of them."""
+"""Export of a run as a time series for ParaView: a VTU file for each frame and a collection of them."""
 
 from __future__ import annotations
 

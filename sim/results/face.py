@@ -1,4 +1,4 @@
-"""The part of an object whose way and force are shown over time."""
+"""The watched face: the nodes of an object whose travel and force are shown over time."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from golden.physics.trajectory import Trajectory
 
 @dataclass(frozen=True, eq=False)
 class Face:
-    """Nodes, and the direction of their motion that is of interest."""
+    """Nodes of an object, and the axis and direction in which their motion is watched."""
 
     name: str
     nodes: np.ndarray  # (N,) bool
     axis: int
-    pressed: bool  # by a driving device; if not, the top of an object that only loads act on
+    pressed: bool  # by a driving device; else it is the top of an object under loads alone
     direction: float  # of the press along the axis, or upwards: +1 or -1
 
     def height(self, trajectory: Trajectory) -> np.ndarray:
-        """(F,) m: the nodes' mean coordinate along the axis."""
+        """Return (F,) the nodes' mean coordinate along the axis (m)."""
         return trajectory.x[:, self.nodes, self.axis].mean(axis=1)
 
     def force(self, trajectory: Trajectory) -> np.ndarray:
-        """(F,) N: what the device presses with; without a device, what the supports carry."""
+        """Return (F,) the force (N) that the device presses with; without a device, the load on the supports."""
         nodes = self.nodes if self.pressed else slice(None)
         return self.direction * trajectory.reaction[:, nodes, self.axis].sum(axis=1)
 
     def press(self, scene: Scene, trajectory: Trajectory) -> tuple[float, float] | None:
-        """How deep the face was pressed, and how far it came back in the end (m, both along the press); None if nothing
+        """Return the depth of the press and the way back until the end (m, both along the press); None if nothing
         pressed or nothing was let go."""
         driving = [n for n, phase in enumerate(scene.phases) if (phase.driven & self.nodes).any()]
         if not self.pressed or (scene.phases[-1].held & self.nodes).any():
@@ -39,13 +39,13 @@ class Face:
         return float(self.direction * (pressed - initial)), float(self.direction * (pressed - final))
 
     def recovery(self, scene: Scene, trajectory: Trajectory) -> float | None:
-        """How much of the press is undone in the end, 0 to 1; None if nothing pressed or nothing was let go."""
+        """Return the part of the press that is undone in the end, 0 to 1; None if nothing pressed or was let go."""
         depth, back = self.press(scene, trajectory) or (0.0, 0.0)
         return back / depth if depth else None
 
 
 def watched(scene: Scene) -> Face:
-    """The face that the first drive moves; of an object that isn't driven, its top."""
+    """Return the face that the first drive moves; of an object that isn't driven, its top."""
     for phase in scene.phases:
         speed = np.linalg.norm(phase.velocity, axis=1) * phase.driven
         if speed.any():

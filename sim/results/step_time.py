@@ -1,4 +1,4 @@
-"""How long a circuit takes for a step of a scene: counted in its run, and on the boards whose clock is known."""
+"""The time of a step: cycles counted in a circuit's run, and the time on each board whose clock is known."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim.results.result import Result
 
 
 def of_run(scene: Scene, result: Result) -> dict:
-    """``cycles_per_step`` and ``occupancy`` (edges issued per lane and cycle) of a circuit's run; None of others."""
+    """Return ``cycles_per_step`` and ``occupancy`` (edges issued per lane and cycle) of a circuit's run; else None."""
     if result.cycles is None:
         return {"cycles_per_step": None, "occupancy": None}
     issued = RK4.stages * len(scene.mesh.edges) * scene.steps
@@ -18,11 +18,11 @@ def of_run(scene: Scene, result: Result) -> dict:
 
 
 def on_boards(scene: Scene, folder=None) -> list[dict]:
-    """What a step would take on each board whose device the tools time.
+    """Return the time of a step on each board whose device the tools time.
 
-    ``timed`` says whether there is a timing result of the board, ``fits`` whether its circuit holds the scene; with
-    both the cycles of a step are those of the cycle model (`sim.results.cycles`), and ``step_us`` and ``real_time``
-    (simulated time / time) follow; ``lanes``, ``updates``, ``axes`` and ``clock_mhz`` say of which circuit.
+    ``timed`` says whether there is a timing result of the board, which has ``lanes``, ``updates``, ``axes`` and
+    ``clock_mhz`` of its circuit; ``fits`` whether that circuit holds the scene. If so, ``cycles_per_step`` is that of
+    the cycle model (`sim.results.cycles`), from which ``step_us`` and ``real_time`` (simulated time / time) follow.
     """
     from hw.boards import board as boards
     from hw.boards.timing import result as timing  # Amaranth is slow to load
@@ -36,7 +36,7 @@ def on_boards(scene: Scene, folder=None) -> list[dict]:
 
 
 def clock(board: str, folder=None) -> float:
-    """MHz: that of a board's timing result. Raises `InputError` if there is none."""
+    """Return the clock (MHz) of a board's timing result. Raises `InputError` if there is none."""
     from hw.boards.timing import result as timing
 
     path = (folder or timing.KEPT) / f"{board}.json"

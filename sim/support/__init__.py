@@ -1,3 +1,3 @@
-"""What the commands share: option types, folders of results, progress on the terminal, many scenes at once.
+"""Shared by the commands: option types, folders of results, progress on the terminal, many scenes at once.
 
 May import golden; nothing else of sim."""
