@@ -10,7 +10,7 @@ from hw.machine.issue_register import LATENCY as ISSUE_LATENCY
 from hw.machine.latency import Latencies
 from hw.parameters import Parameters
 from sim.encode.encode import encode
-from sim.results.cycles import Wavefront, in_turn
+from sim.results.cycles import Wavefront, issue_times
 
 
 def wavefront(nodes, lanes, updates=1, latencies=None, axes=3):
@@ -21,9 +21,9 @@ def wavefront(nodes, lanes, updates=1, latencies=None, axes=3):
     return Wavefront(image, parameters, latencies), image
 
 
-def test_entries_go_in_turn():
-    assert in_turn(np.array([0, 0, 9, 0, 2]), 4).tolist() == [4, 5, 9, 10, 11]
-    assert in_turn(np.array([0, 0, 9, 0, 20]), 4, 3).tolist() == [4, 7, 10, 13, 20]
+def test_entries_are_issued_in_order():
+    assert issue_times(np.array([0, 0, 9, 0, 2]), 4).tolist() == [4, 5, 9, 10, 11]
+    assert issue_times(np.array([0, 0, 9, 0, 20]), 4, 3).tolist() == [4, 7, 10, 13, 20]
 
 
 @pytest.mark.parametrize(

@@ -142,6 +142,19 @@ def test_the_circuit_is_run_like_the_integer_model(monkeypatch, tmp_path):
     assert rtl.raw.same(fixed.raw)
 
 
+def test_a_link_is_closed_whatever_happens():
+    class Link:
+        closed = False
+
+        def close(self):
+            self.closed = True
+
+    link = Link()
+    with pytest.raises(InputError):
+        run(block(), "board", link=link, edge_order=[0, 1])
+    assert link.closed
+
+
 class Wrong(Machine):
     """A machine with one wrong bit in a quantity from step 15 on."""
 

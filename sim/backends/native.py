@@ -1,4 +1,4 @@
-"""The integer model compiled: `golden.datapath.machine` at the speed of C, made from the same equations."""
+"""The integer model compiled to C++: `golden.datapath.machine`, made from the same equations."""
 
 import ctypes
 from collections import Counter
@@ -17,12 +17,12 @@ from sim.backends.native_source import sources
 
 PROGRAM = Path(__file__).with_suffix(".cpp")
 CHUNK = 1_000_000
-"""Edge evaluations between two chances to interrupt."""
+"""Edge evaluations per call; Python handles Ctrl-C between two calls."""
 
 
 @cache
 def compiled(fmt: Formats):
-    """The program ``run`` for these formats, and the names of its faults."""
+    """Return the program ``run`` for these formats, and the names of its faults."""
     files, faults = sources(fmt)
     path = library(files | {PROGRAM.name: PROGRAM.read_text()}, PROGRAM.name)
     run = ctypes.CDLL(str(path)).run
@@ -33,8 +33,7 @@ def compiled(fmt: Formats):
 
 
 class NativeMachine:
-    """The bit-exact model of the circuit, compiled: attributes and methods are those of
-    `golden.datapath.machine.Machine`.
+    """The bit-exact model of the circuit, compiled: a `sim.backends.machine.Machine`.
 
     Raises
     ------
@@ -103,12 +102,12 @@ class NativeMachine:
 
 
 def integers(x, shape) -> np.ndarray:
-    """A copy of this shape: a program in C believes what it is told."""
+    """Return a copy of this shape: the compiled program doesn't check its arguments."""
     copy = np.empty(shape, np.int64)
     copy[...] = x
     return copy
 
 
 def words(contents, record) -> np.ndarray:
-    """The fields of each record side by side."""
+    """Return the fields of each record side by side."""
     return np.stack([np.asarray(contents[name], np.int64) for name in record], axis=-1)

@@ -1,5 +1,4 @@
-"""The C++ text of the datapath's graphs, for `sim/backends/native.cpp` to include: one constant a node, under its
-name."""
+"""The C++ text of the datapath's graphs, which ``native.cpp`` includes: one constant an operation, under its name."""
 
 from golden.datapath import records
 from golden.datapath.formats import Formats
@@ -12,7 +11,7 @@ WIDEST = 63
 
 
 def sources(fmt: Formats) -> tuple[dict[str, str], list[str]]:
-    """The included files (text by name) and the names of the faults in the order in which the program counts them.
+    """Return the included files (text by name) and the names of the faults, in the order of the program's counters.
 
     Raises
     ------
@@ -60,7 +59,7 @@ def _record(prefix: str, record: dict, place: str) -> dict[str, str]:
 
 
 class _Program:
-    """``text``: the statements of one graph. ``places`` says where the inputs are and the outputs go."""
+    """The C++ statements of one graph, ``text``; ``places`` has the C++ variable of each input and output."""
 
     def __init__(self, graph: Graph, places: dict[str, str], faults: list[str]):
         self._places, self._faults = places, faults

@@ -47,7 +47,7 @@ class RtlBackend(IntegerBackend):
 
     name = "rtl"
     words = "Verilog in simulation"
-    summary = "its Verilog under Verilator"
+    summary = "the circuit's Verilog under Verilator"
     compared = True
     options = *SIZES, WAVES
 

@@ -1,4 +1,4 @@
-"""From a scene to what the circuit is loaded with, and from the circuit's integers back to SI."""
+"""Encode a scene as the integers that a circuit is loaded with, and decode the circuit's integers to SI."""
 
 from dataclasses import dataclass
 
@@ -33,7 +33,7 @@ class EncodedScene:
     edge_order: np.ndarray
 
     def start(self, phase: Phase, v: np.ndarray) -> np.ndarray:
-        """Set loads and masses of a phase in the image; the nodes' velocities (raw) with the phase's put in."""
+        """Set loads and masses of a phase in the image; return velocities ``v`` (raw) with those of held nodes set."""
         scene, units, fmt = self.scene, self.units, self.image.formats
         weight = scene.mass[:, None] * scene.gravity
         self.image.load = raw_vectors((phase.load + weight)[self.node_order] / units.force, fmt.accumulator)
@@ -43,50 +43,54 @@ class EncodedScene:
         return np.where(phase.held[self.node_order, None], prescribed, v)
 
     def node_values(self, raw: np.ndarray, q: Q) -> np.ndarray:
-        """(N, dim) float64 in the scene's order from (N, 3) integers in the circuit's."""
+        """Return (N, dim) float64 in the scene's order from (N, 3) integers in the circuit's."""
         values = np.empty((len(raw), self.scene.dim))
         values[self.node_order] = np.ldexp(raw[:, : self.scene.dim].astype(float), -q.frac_bits)
         return values
 
     def positions(self, raw):
-        """(N, dim) m."""
+        """Return (N, dim) positions (m)."""
         return self.node_values(raw, self.image.formats.position) * self.units.size + self.units.centre
 
     def velocities(self, raw):
-        """(N, dim) m/s."""
+        """Return (N, dim) velocities (m/s)."""
         return self.node_values(raw, self.image.formats.velocity) * self.units.velocity
 
     def forces(self, raw):
-        """(N, dim) N."""
+        """Return (N, dim) forces (N)."""
         return self.node_values(raw, self.image.formats.accumulator) * self.units.force
 
     def ratios(self, raw):
+        """Return (E,) ratios."""
         values = np.empty(len(raw))
         values[self.edge_order] = np.ldexp(raw.astype(float), -self.image.formats.ratio.frac_bits)
         return values
 
 
 def raw_vectors(values: np.ndarray, q: Q) -> np.ndarray:
-    """(N, 3) integers, half up, from (N, dim) values in the format's unit. Raises ValueError if one doesn't fit."""
+    """Return (N, 3) integers, rounded half up, of (N, dim) values in the format's unit.
+
+    Raises ValueError if one doesn't fit.
+    """
     padded = np.zeros((len(values), 3))
     padded[:, : values.shape[1]] = values
     return QArray.from_float(padded, q, None).raw
 
 
 def inverse_mass(mass: np.ndarray, units: Units, formats: Formats) -> dict[str, np.ndarray]:
-    """Velocity gained per step and force, as `golden.datapath.node` wants it; an infinite mass (kg) gives 0."""
+    """Return the velocity gained per step and force, for `golden.datapath.node`; an infinite mass (kg) gives 0."""
     scale = units.force * units.dt / units.velocity * 2.0 ** (formats.accumulator.int_bits - 1)
     values, shifts = zip(*(coefficient(scale / m, formats) for m in mass), strict=True)
     return {"value": np.array(values, np.int64), "shift": np.array(shifts, np.int64)}
 
 
 def encode(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarray | None = None) -> EncodedScene:
-    """The circuit's numbers for a scene, at the start of its first phase.
+    """Return a scene in the circuit's numbers, at the start of its first phase.
 
     Parameters
     ----------
     edge_order
-        (E,) permutation to use instead of the one that is fast; the result is the same.
+        (E,) permutation to use instead of the fast one; the results are the same.
 
     Raises
     ------
@@ -123,7 +127,7 @@ def encode(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarr
 
 
 def encode_materials(materials: tuple[Material, ...], units: Units, formats: Formats):
-    """An image's ``materials`` and ``damper``."""
+    """Return an image's ``materials`` and ``damper``."""
     fields, tables = [], []
     for number, material in enumerate(materials):
         record, table = coefficients(material, number, units, formats, len(tables))
@@ -133,13 +137,13 @@ def encode_materials(materials: tuple[Material, ...], units: Units, formats: For
 
 
 def stack(tables: list[dict[str, np.ndarray]], formats: Formats) -> dict[str, np.ndarray]:
-    """(T, segments) for each field; at least one table, of zeros, where no damper needs one."""
+    """Return (T, segments) for each field; one table of zeros where no damper needs any."""
     blank = {name: np.zeros(1 << formats.damper_index.width, np.int64) for name in records.damper_word(formats)}
     return {name: np.stack([t[name] for t in tables or [blank]]) for name in blank}
 
 
 def natural_length(image: Image) -> np.ndarray:
-    """(E,) L = a0 l from the datapath's own product, so that an object at rest is at rest in the integers too."""
+    """Return (E,) L = a0 l from the datapath's own product: an object at rest is at rest in the integers too."""
     fmt = image.formats
     tables = Tables(fmt, image.inverse, image.damper)
 

@@ -1,4 +1,4 @@
-"""An image as the writes that load it into a circuit: who goes to which lane and row, and in what order."""
+"""The program of a circuit: the writes that load an image, with each edge's lane and row and each node's updater."""
 
 from collections.abc import Iterator
 
@@ -16,8 +16,8 @@ Write = tuple[int, int]
 
 
 class Program:
-    """The layout of an image in a circuit: edge e is in lane ``e % lanes``, row ``e // lanes``; node n is updated by
-    ``n % updates`` in the row of nodes ``n // updates``.
+    """The writes that load an image into a circuit. Edge e goes to lane ``e % lanes``, row ``e // lanes``; node n to
+    updater ``n % updates``, row ``n // updates``.
 
     Raises
     ------
@@ -43,19 +43,19 @@ class Program:
             raise InputError(f"formats of the object must be the circuit's {parameters.formats}, not {image.formats}")
 
     def load(self) -> Iterator[Write]:
-        """Everything but what changes from phase to phase."""
+        """Yield all writes but those of `start`."""
         yield from self._control()
         yield from self.materials()
         yield from self._entries()
 
     def materials(self) -> Iterator[Write]:
-        """What another material changes: coefficients, damper tables, natural lengths and ratios."""
+        """Yield the writes that change materials: coefficients, damper tables, natural lengths and ratios."""
         yield from self._materials()
         yield from self._tables()
         yield from self._edges()
 
     def start(self, v: np.ndarray, x: np.ndarray | None = None) -> Iterator[Write]:
-        """What a phase sets: velocities, loads and masses; positions too if given."""
+        """Yield the writes that start a phase: velocities, loads and masses; positions too if given."""
         image, mass = self.image, records.inverse_mass(self.parameters.formats)
         columns = [*zip(NODE_LOAD, image.load.T, strict=True), *zip(NODE_STATE[3:], v.T, strict=True)]
         columns += zip(NODE_STATE[:3], x.T, strict=True) if x is not None else []
@@ -64,30 +64,32 @@ class Program:
         yield from self._column(Region.NODE, "inverse_mass", mass.pack(image.inverse_mass))
 
     def need(self) -> np.ndarray:
-        """(node rows,) how many rows of edges have to be summed before a row of nodes may be updated."""
+        """Return (node rows,) the rows of edges that have to be summed before a row of nodes may be updated."""
         need = np.zeros(-(-self.image.nodes // self.parameters.updates), np.int64)
         rows = np.arange(len(self.image.edges)) // self.parameters.lanes
         np.maximum.at(need, self.image.edges // self.parameters.updates, rows[:, None] + 1)
         return need
 
     def highest(self) -> np.ndarray:
-        """(rows,) the last row of nodes with an end of one of the row's edges."""
+        """Return (rows,) the last row of nodes that an edge of the row reads."""
         highest = np.zeros(self.rows, np.int64)
         rows = np.arange(len(self.image.edges)) // self.parameters.lanes
         np.maximum.at(highest, rows, self.image.edges.max(axis=1) // self.parameters.updates)
         return highest
 
     def edge_addresses(self, word: str) -> list[int]:
-        return [self._address(Region.EDGE, word, *self._place(e)) for e in range(len(self.image.edges))]
+        """Return the address of a word of each edge."""
+        return [self._address(Region.EDGE, word, *self._row_and_lane(e)) for e in range(len(self.image.edges))]
 
     def node_addresses(self, word: str) -> list[int]:
+        """Return the address of a word of each node."""
         return [self._address(Region.NODE, word, n) for n in range(self.image.nodes)]
 
     def _address(self, region, word, index, lane=0):
         return self._map.address(region, word, index, lane)
 
-    def _place(self, edge: int) -> tuple[int, int]:
-        """(row, lane)"""
+    def _row_and_lane(self, edge: int) -> tuple[int, int]:
+        """Return (row, lane) of an edge."""
         return edge // self.parameters.lanes, edge % self.parameters.lanes
 
     def _word(self, raw) -> int:
@@ -124,16 +126,16 @@ class Program:
                 yield address, self._word(value)
 
     def _entries(self):
-        """Edge and node entries: see `golden.datapath.records`."""
+        """Yield the entries of the edge and node lists: see `golden.datapath.records`."""
         image, lanes, updates = self.image, self.parameters.lanes, self.parameters.updates
         need = np.repeat(self.need(), updates)
         mask = np.zeros(len(need), int)
-        for place in range(self.rows * lanes):
-            row, lane = self._place(place)
+        for number in range(self.rows * lanes):
+            row, lane = self._row_and_lane(number)
             fields = dict.fromkeys(records.edge_entry(), 0)
-            if place < len(image.edges):
-                fields |= {"valid": 1, "material": image.edge_material[place]}
-                for half, (end, n) in enumerate(zip("ij", image.edges[place], strict=True)):
+            if number < len(image.edges):
+                fields |= {"valid": 1, "material": image.edge_material[number]}
+                for half, (end, n) in enumerate(zip("ij", image.edges[number], strict=True)):
                     bank = 1 << half * lanes + lane
                     fields |= {end: n, f"{end}_first": int(not mask[n] & bank)}
                     mask[n] |= bank

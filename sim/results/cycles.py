@@ -1,8 +1,8 @@
-"""The cycles of a run, exactly as the circuit counts them, from the lists alone: nothing has to be built.
+"""The cycle model: the cycles of a run, exactly as the circuit counts them, from the lists of edges and nodes alone.
 
-An event is a cycle counted from the first of the run. Rows of edges and rows of nodes go in the order of their lists,
-one a cycle (nodes one in three, if their axes come one after the other), so that each of them is at its place in the
-list plus the longest delay of those before it.
+Times are cycles from the first of the run. Rows of edges and rows of nodes are issued in the order of their lists, one
+a cycle (nodes one in three cycles if an updater takes their axes one by one). The time of an entry is therefore its
+index in the list plus the longest delay of the entries before it.
 """
 
 import numpy as np
@@ -18,11 +18,11 @@ from sim.encode import limits
 from sim.encode.program import Program
 
 UNTIL_SETTLED = 50
-"""Steps after which every list that ends well has found its rhythm."""
+"""Steps after which the lengths of steps repeat."""
 
 
 class Wavefront:
-    """An object in a circuit: when its rows and nodes go.
+    """The times at which the rows of edges and nodes of an object are issued in a circuit.
 
     Raises
     ------
@@ -36,29 +36,29 @@ class Wavefront:
         self.rows, self.edges, self._lanes = program.rows, len(image.edges), parameters.lanes
         self._pace = parameters.cycles_per_node
         self._highest, self._need = program.highest(), program.need()
-        self._need[-1] = self.rows  # the last nodes close the stage
+        self._need[-1] = self.rows  # the last row of nodes ends the stage
 
     def run(self, steps: int) -> np.ndarray:
-        """(steps,) the first cycle after each step of a run; the last is what the circuit's counter says."""
+        """Return (steps,) the first cycle after each step of a run; the last is the value of the circuit's counter."""
         updated = np.full(len(self._need), 0)
         last_row, last_node = self.latencies.rows - 1, self.latencies.nodes - self._pace
         ends = []
         for stage in range(steps * RK4.stages):
-            rows = in_turn(updated[self._highest] if stage else np.zeros(self.rows, np.int64), last_row + 1)
+            rows = issue_times(updated[self._highest] if stage else np.zeros(self.rows, np.int64), last_row + 1)
             summed = np.concatenate([[0], rows + self.latencies.edge])
-            nodes = in_turn(summed[self._need], last_node + self._pace, self._pace)
+            nodes = issue_times(summed[self._need], last_node + self._pace, self._pace)
             updated = nodes + self.latencies.node
             last_row, last_node = rows[-1], nodes[-1]
             ends += [updated[-1] - ISSUE_LATENCY] if stage % RK4.stages == RK4.stages - 1 else []
         return np.array(ends)
 
     def per_step(self) -> int:
-        """Cycles of a step once running: a run of n + 1 steps takes so many more than one of n.
+        """Return the cycles of a step: a run of n + 1 steps takes so many more than one of n, once n is large.
 
         Raises
         ------
         ValueError
-            If steps take turns in being short and long.
+            If steps have different lengths even then.
         """
         lengths = np.diff(self.run(UNTIL_SETTLED))[UNTIL_SETTLED // 2 :]
         if (lengths != lengths[0]).any():
@@ -66,19 +66,19 @@ class Wavefront:
         return int(lengths[0])
 
     def occupancy(self) -> float:
-        """Edges issued per lane and cycle, once running."""
+        """Return the edges issued per lane and cycle."""
         return RK4.stages * self.edges / (self._lanes * self.per_step())
 
 
-def in_turn(ready: np.ndarray, first: int, pace: int = 1) -> np.ndarray:
-    """When entries of a list go that are ready at these times, one in ``pace`` cycles, the first not before
-    ``first``."""
+def issue_times(ready: np.ndarray, first: int, pace: int = 1) -> np.ndarray:
+    """Return the times at which the entries of a list are issued in order that are ready at these times: one in
+    ``pace`` cycles, none before ``first``."""
     turns = pace * np.arange(len(ready))
     return turns + np.maximum.accumulate(np.maximum(ready - turns, first))
 
 
 def cycles_per_step(scene: Scene, lanes: int, updates: int) -> int:
-    """Cycles of a step of a scene's object, once running, in a circuit that has room for it.
+    """Return the cycles of a step of a scene's object in a circuit that has room for it.
 
     Raises
     ------
