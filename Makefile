@@ -7,34 +7,36 @@ BOARD ?= ulx3s-85f
 
 # This make's flags must not reach the makes that Verilator and cocotb start.
 run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
-lanes := --lanes $(LANES)
-updates := --updates $(UPDATES)
+lower = $(shell echo $(1) | tr A-Z a-z)
+option = --$(call lower,$(1)) $($(1))
+# The sizes of a circuit, hw/sizes.py; a board has its own, but for those that are given.
+SIZES := LANES UPDATES NODES EDGES MATERIALS TABLES AXES
+sizes := $(foreach size,$(SIZES),$(if $($(size)),$(call option,$(size))))
+given := $(foreach size,$(SIZES),$(if $(filter-out undefined file,$(origin $(size))),$(call option,$(size))))
 family := $(if $(FAMILY),--family $(FAMILY))
 # The tests of a file go to one worker: what they share is built once.
 pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
-capacities := $(if $(NODES),--nodes $(NODES)) $(if $(EDGES),--edges $(EDGES)) \
-              $(if $(MATERIALS),--materials $(MATERIALS)) $(if $(TABLES),--tables $(TABLES)) $(if $(AXES),--axes $(AXES))
 
 .DEFAULT_GOAL := compare
 .NOTPARALLEL:
 .PHONY: compare figures verilog timing bitstream flash doctor bench test verify lint lock help clean distclean environment
 
 compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on float64, integers and simulated circuit
-	@$(run) -m sim compare scenes/*.toml $(lanes) $(updates) --out build/report
+	@$(run) -m sim compare scenes/*.toml --lanes $(LANES) --updates $(UPDATES) --out build/report
 	@echo "report: build/report/index.html, figures: build/report/compare.json"
 
 figures: environment ## draw the paper's figures from runs of the circuit: PNG, SVG, GIF and their numbers in build/figures
 	@$(run) -m sim figures --out build/figures
 
 verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES=, AXES= choose its size, FAMILY= its hard blocks
-	@$(run) -m hw verilog $(lanes) $(updates) $(capacities) $(family) --out build/verilog
+	@$(run) -m hw verilog $(sizes) $(family) --out build/verilog
 
 timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3", JOBS=
-	@$(run) -m hw timing --board $(BOARD) $(if $(filter-out file,$(origin LANES)),$(lanes)) $(capacities) \
+	@$(run) -m hw timing --board $(BOARD) $(given) \
 	    $(if $(SEEDS),--seeds $(SEEDS)) --jobs $(JOBS)
 
 bitstream: environment ## what is loaded into BOARD=, or a project for its vendor's tool; LANES= ... as above, KEEP=1 publishes
-	@$(run) -m hw bitstream --board $(BOARD) $(if $(filter-out file,$(origin LANES)),$(lanes)) $(capacities) \
+	@$(run) -m hw bitstream --board $(BOARD) $(given) \
 	    $(if $(KEEP),--keep)
 
 flash: environment ## load it into BOARD=; PERMANENT=1 to be there at power-on

@@ -1,34 +1,25 @@
-"""The parameters of a circuit: how much it holds, how wide its words are, what its device's registers cost."""
+"""The parameters of a circuit: its sizes, the widths of its words, the registers that its device needs."""
 
-from dataclasses import dataclass, field
-from typing import ClassVar
+from dataclasses import dataclass, field, make_dataclass
 
 from amaranth.hdl import Const, Value
 
-from golden.datapath import records
 from golden.datapath.formats import Formats
-from golden.numbers.graph import AXES
 from hw.families import FAMILIES
 from hw.pipeline.cost import Cost
+from hw.sizes import EDGE, NODE, SIZES, cycles_per_node, sizes_of
 
-EDGE, NODE = records.edge_entry(), records.node_entry()
+Sizes = make_dataclass("Sizes", [(size.name, int, size.default) for size in SIZES.values()], frozen=True)
 
 
 @dataclass(frozen=True)
-class Parameters:
-    """What a circuit is built for.
+class Parameters(Sizes):
+    """The parameters of a circuit.
 
     Parameters
     ----------
-    lanes : int
-        Edge processors, 1 to 8.
-    updates : int
-        Nodes updated per cycle, 1 or 2: node updaters, each with its share of every memory of nodes.
-    axes : int
-        Axes of a node that an updater takes per cycle: 3, or 1, with which it is little more than a third as large
-        and takes three cycles for a node.
-    nodes, edges, materials, tables : int
-        Capacity. Each lane holds ``edges / lanes`` edges, rounded up.
+    <size> : int
+        Each of `hw.sizes.SIZES`, which says what it may be.
     formats : Formats
     cost : Cost
     family : str
@@ -38,39 +29,17 @@ class Parameters:
     Raises
     ------
     ValueError
-        If one of them is out of range: `golden.datapath.records` says how large a node's number may be, and so on; if a
-        state word, in which the host writes everything, is shorter than the longest of those records; or if the family
-        is unknown.
+        If a size is not allowed; if a state word, in which the host writes everything, is shorter than the longest
+        record of `golden.datapath.records`; or if the family is unknown.
     """
 
-    lanes: int = 4
-    updates: int = 1
-    nodes: int = 512
-    edges: int = 4096
-    materials: int = 16
-    tables: int = 4
-    axes: int = len(AXES)
     formats: Formats = field(default_factory=Formats)
     cost: Cost = field(default_factory=Cost)
     family: str = "generic"
 
-    RANGES: ClassVar[dict[str, tuple[int, int]]] = {
-        "lanes": (1, NODE["mask"].width // 2),
-        "updates": (1, 2),
-        "nodes": (2, EDGE["i"].raw_max + 1),
-        "edges": (1, 1 << 16),  # index bits of a host address
-        "materials": (1, EDGE["material"].raw_max + 1),
-        "tables": (1, 16),
-    }
-    SIZES: ClassVar[tuple[str, ...]] = (*RANGES, "axes")
-
     def __post_init__(self):
-        for name, (low, high) in self.RANGES.items():
-            value = getattr(self, name)
-            if not isinstance(value, int) or not low <= value <= high:
-                raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
-        if not isinstance(self.axes, int) or self.axes not in (1, len(AXES)):
-            raise ValueError(f"axes must be 1 or {len(AXES)}, not {self.axes!r}")
+        for name, value in sizes_of(self).items():
+            SIZES[name].check(value)
         if self.family not in FAMILIES:
             raise ValueError(f"family must be {' or '.join(FAMILIES)}, not {self.family!r}")
         longest = max(EDGE.width, NODE.width)
@@ -116,22 +85,6 @@ class Parameters:
         """Bits of a host address's index, for the deepest memory."""
         table = self.tables << self.formats.damper_index.width
         return (max(self.rows, self.nodes, self.materials, table) - 1).bit_length()
-
-
-def cycles_per_node(sizes) -> int:
-    """Cycles that an updater takes for a node, of `Parameters` or anything with the same sizes."""
-    return len(AXES) // sizes.axes
-
-
-def updated(sizes) -> str:
-    """Nodes that are updated per cycle."""
-    return str(sizes.updates) if cycles_per_node(sizes) == 1 else f"{sizes.updates}/{cycles_per_node(sizes)}"
-
-
-def counted(sizes) -> str:
-    """All sizes, for a sentence."""
-    counts = {name: str(getattr(sizes, name)) for name in Parameters.RANGES} | {"updates": updated(sizes)}
-    return ", ".join(f"{n} {name.removesuffix('s') if n == '1' else name}" for name, n in counts.items())
 
 
 def node_place(node: Value, updates: int) -> tuple[Value, Value]:

@@ -8,7 +8,8 @@ from golden.datapath import records
 from golden.datapath.machine import Machine
 from golden.datapath.rk4 import RK4
 from hw.machine.core import Core
-from hw.map.memory_map import COUNTERS, MAGIC, NODE_FORCE, NODE_STATE, TABLE_WORDS, VERSION, Control, Region, join
+from hw.map.control import COUNTERS, MAGIC, VERSION, Control
+from hw.map.memory_map import NODE_FORCE, NODE_STATE, TABLE_WORDS, Region, join
 
 
 @cocotb.test()

@@ -11,7 +11,8 @@ from integer_objects import MATERIALS, irregular, pressed
 from golden.datapath import records
 from golden.datapath.machine import Machine
 from hw.machine.host_port import LATENCY
-from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region, join
+from hw.map.control import Control
+from hw.map.memory_map import NODE_FORCE, NODE_STATE, Map, Region, join
 from hw.parameters import Parameters
 from sim.encode.encode import encode
 from sim.encode.program import Program
@@ -86,7 +87,7 @@ class Host:
         return await self.wait()
 
     async def wait(self):
-        """Until the run is over: its counters (`hw.map.memory_map.COUNTERS`), counted on the way."""
+        """Until the run is over: its counters (`hw.map.control.COUNTERS`), counted on the way."""
         counted = np.zeros(6, int)
         while int(self.dut.busy.value):
             sequencer = self.dut.sequencer

@@ -3,7 +3,8 @@
 from hw_objects import simulate
 
 from hw.machine.host_port import CHOICE, LATENCY, MEMORY, HostPort, word_of
-from hw.map.memory_map import Control, Map, Region, join
+from hw.map.control import Control
+from hw.map.memory_map import Map, Region, join
 from hw.parameters import Parameters
 
 P = Parameters(lanes=3, nodes=20, edges=31, materials=5, tables=1)

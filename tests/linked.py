@@ -14,7 +14,7 @@ from hw.link.device import Device
 from hw.link.frame import Frame, unpacked
 from hw.link.receive import BYTE_CYCLES
 from hw.machine.core import Core
-from hw.map.memory_map import MAGIC
+from hw.map.control import MAGIC
 from hw.parameters import Parameters
 from sim.backends.rtl import BUILD
 from sim.backends.verilated import library, opened

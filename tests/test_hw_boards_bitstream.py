@@ -16,7 +16,7 @@ from hw.boards.timing import tools as programs
 from hw.boards.timing.result import read
 from hw.boards.top import CLOCK, PLLS
 from hw.families import cells
-from hw.parameters import Parameters
+from hw.sizes import SIZES, sizes_of
 
 CELLS = {
     "ecp5": {
@@ -199,7 +199,7 @@ def test_a_hard_block_slower_than_the_clock(run, aside, monkeypatch):
 )
 def test_impossible_options_are_one_line(options, message, aside, capsys):
     assert main(["bitstream", *options]) == 2
-    high = boards.load("ulx3s-85f").parameters().RANGES["lanes"][1]
+    high = SIZES["lanes"].allowed[-1]
     assert capsys.readouterr().err == f"error: {message.format(lanes=high)}\n"
 
 
@@ -235,9 +235,7 @@ def test_files_that_are_kept_are_builds_of_the_boards_own_circuits():
     for path in result.KEPT.glob("*.json"):
         build, board = read(path, Build), boards.load(path.stem)
         assert build.board == path.stem
-        assert {size: getattr(build, size) for size in Parameters.SIZES} == {
-            size: getattr(board.circuit, size) for size in Parameters.SIZES
-        }
+        assert sizes_of(build) == sizes_of(board.circuit)
 
 
 @pytest.mark.campaign

@@ -9,7 +9,7 @@ import pytest
 from golden.support.errors import InputError
 from hw.boards import board as boards
 from hw.boards.timing.result import Result
-from hw.parameters import Parameters
+from hw.sizes import SIZES
 
 TEXT = (boards.FOLDER / "ulx3s-85f.toml").read_text()
 DOCUMENT = tomllib.loads(TEXT)
@@ -44,8 +44,8 @@ def test_a_board_has_its_circuit_and_takes_another():
 
 
 def test_a_circuit_has_a_size_of_each_kind():
-    assert tuple(boards.Circuit.__struct_fields__) == Parameters.SIZES
-    assert set(Parameters.SIZES) <= set(Result.__struct_fields__)
+    assert list(boards.Circuit.__struct_fields__) == list(SIZES)
+    assert set(SIZES) <= set(Result.__struct_fields__)
 
 
 def test_an_unknown_board_lists_those_known():
@@ -132,7 +132,7 @@ def test_a_key_that_is_missing_or_of_another_type(path, refused):
 )
 def test_a_value_that_is_wrong(old, new, message, refused):
     assert TEXT.count(old) == 1
-    high = Parameters.RANGES["lanes"][1]
+    high = SIZES["lanes"].allowed[-1]
     refused(TEXT.replace(old, new), message.replace("to 6,", f"to {high},"))
 
 

@@ -14,7 +14,7 @@ from hw.boards.timing.frame import FRAME
 from hw.boards.timing.report import Step
 from hw.boards.timing.result import Result
 from hw.families.cells import Sizes
-from hw.parameters import Parameters
+from hw.sizes import SIZES as CIRCUIT_SIZES
 
 STATISTICS = {
     "modules": {"\\rheogate": {}, f"\\{FRAME}": {"num_cells_by_type": {"LUT4": 39, "TRELLIS_FF": 106, "rheogate": 1}}},
@@ -224,7 +224,7 @@ HELP = "(see python -m hw timing --help)"
 )
 def test_impossible_options_are_one_line(options, message, tools_aside, tmp_path, capsys):
     assert main(["timing", *options.split()]) == 2
-    message = message.format(lanes=Parameters.RANGES["lanes"][1])
+    message = message.format(lanes=CIRCUIT_SIZES["lanes"].allowed[-1])
     assert said(capsys) == ([], [f"error: {message}"])
 
 

@@ -10,6 +10,7 @@ from hw_objects import core_to_ask
 
 from golden.support import files
 from hw.__main__ import main
+from hw.commands import lint as lint_command
 from hw.emit import build, lint, manifest
 from hw.emit.build import MANIFEST, VERILOG
 from hw.emit.verilog import TOP
@@ -270,7 +271,7 @@ def test_lint_judges_what_it_writes(emitted, out, monkeypatch, capsys):
         assert (path, top, family) == (out / VERILOG, TOP, "ecp5")
         return warnings
 
-    monkeypatch.setattr(lint, "lint", judge)
+    monkeypatch.setattr(lint_command, "lint", judge)
     arguments = ["lint", *SMALL, "--family", "ecp5", "--out", str(out)]
     assert main(arguments) == 0
     assert said(capsys) == (

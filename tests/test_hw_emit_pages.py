@@ -10,7 +10,8 @@ from hw.emit import pages
 from hw.link.description import description, key
 from hw.link.protocol import HEAD, Operation, Status
 from hw.link.registers import LINK, Link
-from hw.map.memory_map import CONTROL_TEXT, Control, Map, Region, join
+from hw.map.control import REGISTERS, Control
+from hw.map.memory_map import Map, Region, join
 from hw.parameters import Parameters
 
 P = Parameters(lanes=3, nodes=20, edges=31, materials=5, tables=2)
@@ -47,7 +48,7 @@ def test_the_header_compiles_and_gives_the_same_numbers(tmp_path):
 def test_the_page_and_the_data_say_everything(tmp_path):
     pages.write(P, tmp_path)
     page = (tmp_path / pages.PAGE).read_text()
-    assert all(f"| {r.value} | {r.name} | {CONTROL_TEXT[r]} |" in page for r in Control)
+    assert all(f"| {r.value} | {r.name} | {row.meaning} |" in page for r, row in REGISTERS.items())
     assert all(word in page for region in Region for word in Map(P).words(region))
     assert json.loads((tmp_path / pages.DATA).read_text()) == {"key": key(P).hex(), **description(P)}
 

@@ -10,7 +10,7 @@ from hw.link.bound import LONGEST, PAUSED, Work, cycles
 from hw.link.frame import PAYLOAD_MOST, unpacked
 from hw.link.protocol import BUSY, COUNT_MOST, ITEM_BYTES, ITEMS_MOST, Kind, Operation, Status, head, items
 from hw.link.receive import BYTE_CYCLES
-from hw.map.memory_map import Control
+from hw.map.control import Control
 
 SLACK = ITEM_BYTES
 """Cycles that the bound may be more than what is taken: those in which the last item is written."""

@@ -11,7 +11,8 @@ from linked import IDENTITY, QUIET, SMALL, Line
 
 from hw.link.frame import ANSWER, Frame
 from hw.link.protocol import BUSY, ITEM_BYTES, ITEMS_MOST, Kind, Operation, Status, head, item, items
-from hw.map.memory_map import MAGIC, Control, Map, Region
+from hw.map.control import MAGIC, Control
+from hw.map.memory_map import Map, Region
 from sim.backends.native import NativeMachine
 from sim.encode.program import Program
 

@@ -9,7 +9,8 @@ from test_hw_link_device import access, control, hello, loaded, read, write
 from hw.link.frame import Frame
 from hw.link.protocol import Operation, Status, items
 from hw.link.registers import LINK, LINK_TEXT, Link
-from hw.map.memory_map import Control, join
+from hw.map.control import Control
+from hw.map.memory_map import join
 from sim.backends.native import NativeMachine
 
 ALL = read(join(LINK, 0, 0, 0), len(Link))

@@ -9,7 +9,8 @@ from golden.datapath.machine import Machine
 from hw.machine.core import Core
 from hw.machine.host_port import LATENCY
 from hw.machine.lane import latency
-from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region, join
+from hw.map.control import Control
+from hw.map.memory_map import NODE_FORCE, NODE_STATE, Map, Region, join
 from hw.parameters import Parameters
 from hw.pipeline.cost import Cost
 from sim.encode.encode import encode

@@ -6,8 +6,9 @@ from host_port import FAULTS, MAP, MEMORIES, STATE, P, Port, content, control, u
 from hw_objects import simulate
 
 from hw.machine.host_port import ANYTIME, LATENCY
-from hw.map.memory_map import COUNTERS as NAMES
-from hw.map.memory_map import MAGIC, READ_ONLY, VERSION, Control, Region, join
+from hw.map.control import COUNTERS as NAMES
+from hw.map.control import MAGIC, REGISTERS, VERSION, Control
+from hw.map.memory_map import Region, join
 
 FIXED = {
     Control.MAGIC: MAGIC,
@@ -18,6 +19,7 @@ FIXED = {
     Control.ROWS: 11,
     Control.MATERIALS: 5,
     Control.TABLES: 1,
+    Control.AXES: 3,
 }
 COUNTERS = {
     **{control: (name, 12345 + (1 << 30 + control // 3)) for control, name in NAMES.items()},
@@ -34,7 +36,7 @@ REFUSED = {
     for place in [dict(index=0, word=0, lane=0) | {part: value}]
 }
 REFUSED |= {f"region {region}": (write, join(region, 0, 0, 0), 1) for region in (5, 6, 7) for write in (0, 1)}
-REFUSED |= {f"a write to {r.name}": (1, control(r), 1) for r in READ_ONLY}
+REFUSED |= {f"a write to {r.name}": (1, control(r), 1) for r, row in REGISTERS.items() if not row.writable}
 REFUSED |= {f"a write to {word}": (1, MAP.address(Region.NODE, word, 3), 1) for word in MAP.words(Region.NODE)[-3:]}
 REFUSED |= {
     "no rows": (1, control(Control.ROW_COUNT), 0),

@@ -13,7 +13,8 @@ from served import SMALL, Service, serial_circuit, served
 
 from hw.link.description import key
 from hw.link.registers import LINK, Link
-from hw.map.memory_map import Control, Map, Region, join
+from hw.map.control import Control
+from hw.map.memory_map import Map, Region, join
 from hw.parameters import Parameters
 from sim.__main__ import main
 from sim.backends.circuit import CircuitMachine

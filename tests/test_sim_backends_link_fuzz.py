@@ -9,7 +9,8 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, precondition,
 from integer_objects import random_image
 from served import SMALL, NoisyLine, serial_circuit
 
-from hw.map.memory_map import Control, Map, Region
+from hw.map.control import Control
+from hw.map.memory_map import Map, Region
 from sim.backends.circuit import CircuitMachine
 from sim.backends.link.board import Board
 from sim.backends.link.errors import CommandRefused, LinkError

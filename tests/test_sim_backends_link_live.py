@@ -15,7 +15,8 @@ from hw.link.description import key
 from hw.link.frame import Frame
 from hw.link.protocol import Operation
 from hw.link.send import LOOK
-from hw.map.memory_map import Control, Map, Region
+from hw.map.control import Control
+from hw.map.memory_map import Map, Region
 from sim.backends.circuit import CircuitMachine
 from sim.backends.link.board import Board
 from sim.backends.link.live import Live, line_bytes, most_nodes

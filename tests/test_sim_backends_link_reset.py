@@ -6,7 +6,8 @@ from math import inf
 import pytest
 from served import CLOCK_HZ, SMALL, NoisyLine, serial_circuit
 
-from hw.map.memory_map import Control, Map, Region
+from hw.map.control import Control
+from hw.map.memory_map import Map, Region
 from sim.backends.link.board import Board
 
 TIMEOUT = 2e-3

@@ -5,7 +5,8 @@ from served import SMALL, NoisyLine, serial_circuit
 
 from hw.link.description import key
 from hw.link.protocol import Kind, Operation, Status, head, item, items
-from hw.map.memory_map import MAGIC, Control, Map, Region
+from hw.map.control import MAGIC, Control
+from hw.map.memory_map import Map, Region
 from sim.backends.link.errors import NoAnswer
 from sim.backends.link.session import Session
 

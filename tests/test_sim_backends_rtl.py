@@ -10,7 +10,8 @@ from rtl_objects import STATE, assert_same, circuit, renumbered, rtl_machine, ru
 from golden.datapath.formats import Formats
 from golden.support.errors import InputError
 from hw.machine.host_port import LATENCY
-from hw.map.memory_map import MAGIC, Control, Map, Region
+from hw.map.control import MAGIC, Control
+from hw.map.memory_map import Map, Region
 from hw.parameters import Parameters
 from sim.backends.native import NativeMachine
 from sim.backends.rtl import BUILD

@@ -56,7 +56,7 @@ HELP = "(see python -m sim run --help)"
         ),
         (
             ["run", "s.toml", "--backend", "rtl", "--updates", "3", "--out", "o"],
-            "updates must be a whole number from 1 to 2, not 3",
+            "updates must be 1 or 2, not 3",
         ),
         (["compare", "s.toml", "--lanes", "9", "--out", "o"], "lanes must be a whole number from 1 to 8, not 9"),
         (

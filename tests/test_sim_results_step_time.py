@@ -10,6 +10,7 @@ from golden.datapath.rk4 import RK4
 from golden.support.errors import InputError
 from hw.boards import board as boards
 from hw.parameters import Parameters
+from hw.sizes import SIZES
 from sim.encode import limits
 from sim.results import step_time as steptime
 from sim.results.cycles import Wavefront
@@ -57,7 +58,7 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING))
     scene = block(dim=3)
     found = next(board for board in steptime.on_boards(scene, tmp_path) if board["timed"])
-    parameters = Parameters(**{name: TIMING[name] for name in Parameters.RANGES})
+    parameters = Parameters(**{name: TIMING[name] for name in SIZES if name in TIMING})
     cycles = Wavefront(limits.encode(scene).image, parameters).per_step()
     assert cycles >= RK4.stages * len(scene.mesh.edges) / 2
     assert found == {

@@ -206,7 +206,7 @@ def test_progress(backend):
         ({"backend": "fixed", "engine": "fast"}, "engine must be one of native, numpy, not 'fast'"),
         ({"backend": "rtl", "lanes": 0}, "lanes must be a whole number from 1 to 8, not 0"),
         ({"backend": "rtl", "lanes": 2.0}, "lanes must be a whole number from 1 to 8, not 2.0"),
-        ({"backend": "rtl", "updates": 3}, "updates must be a whole number from 1 to 2, not 3"),
+        ({"backend": "rtl", "updates": 3}, "updates must be 1 or 2, not 3"),
         (
             {"backend": "fixed", "waves": "w.fst"},
             "waves must go with the backend rtl, not fixed",

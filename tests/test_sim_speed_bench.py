@@ -147,7 +147,7 @@ def test_out_is_refused_before_anything_is_timed(quick, out, reason, tmp_path, c
 @pytest.mark.parametrize(
     "lanes, updates, message",
     [
-        (1, 3, "updates must be a whole number from 1 to 2, not 3"),
+        (1, 3, "updates must be 1 or 2, not 3"),
         (9, 1, "lanes must be a whole number from 1 to 8, not 9"),
     ],
 )

@@ -5,14 +5,15 @@ from __future__ import annotations
 import tomllib
 from pathlib import Path
 
-from msgspec import Struct
+from msgspec import Struct, defstruct
 
 from golden.scene import schema
 from golden.scene.schema import Count, Positive
 from golden.support.errors import InputError
 from golden.support.paths import BOARDS
 from hw.families import FAMILIES
-from hw.parameters import Parameters, updated
+from hw.parameters import Parameters
+from hw.sizes import SIZES, Size, shown, sizes_of
 
 FOLDER = BOARDS
 DEVICES = {
@@ -61,14 +62,12 @@ class Pins(Struct, forbid_unknown_fields=True):
     locked: Pin | None = None
 
 
-class Circuit(Struct, forbid_unknown_fields=True):
-    lanes: int
-    updates: int
-    nodes: int
-    edges: int
-    materials: int
-    tables: int
-    axes: int = Parameters.axes
+def _field(size: Size):
+    return (size.name, int, size.default) if size.optional else (size.name, int)
+
+
+Circuit = defstruct("Circuit", map(_field, SIZES.values()), module=__name__, forbid_unknown_fields=True)
+"""The sizes of a circuit, as fields."""
 
 
 class Board(Struct, forbid_unknown_fields=True):
@@ -95,7 +94,7 @@ class Board(Struct, forbid_unknown_fields=True):
 
     def parameters(self, **chosen: int | None) -> Parameters:
         """The board's circuit, but for what is ``chosen``. Raises ValueError as `Parameters` does."""
-        sizes = {name: getattr(self.circuit, name) for name in self.circuit.__struct_fields__}
+        sizes = sizes_of(self.circuit)
         sizes |= {name: size for name, size in chosen.items() if size is not None}
         return Parameters(**sizes, family=self.family if self.family in FAMILIES else "generic")
 
@@ -122,13 +121,13 @@ def load(name: str, folder: Path = FOLDER) -> Board:
         raise InputError(f"{path}: {error}") from None
 
 
-SIZES = "lanes | updates | nodes | edges"
-"""Columns of a table of boards."""
+COLUMNS = " | ".join(size.name for size in SIZES.values() if size.column)
+"""The columns of sizes in a table of boards."""
 
 
-def sizes_of(circuit: Circuit) -> list[str]:
-    """What stands in the columns `SIZES`."""
-    return [str(circuit.lanes), updated(circuit), str(circuit.nodes), str(circuit.edges)]
+def cells_of(circuit: Circuit) -> list[str]:
+    """The sizes below the columns `COLUMNS`."""
+    return [text for name, text in shown(circuit).items() if SIZES[name].column]
 
 
 def shares(sizes, board: Board) -> list[tuple[str, int, int]]:

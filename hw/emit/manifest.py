@@ -9,6 +9,7 @@ from hw.link.description import description, dump
 from hw.machine.core import Core
 from hw.machine.latency import latencies
 from hw.parameters import Parameters
+from hw.sizes import sizes_of, words_of
 
 DESIGN = "rheogate"
 
@@ -46,19 +47,7 @@ def manifest(core: Core, verilog: str, key: str) -> dict:
 
 
 def parameters(p: Parameters) -> dict:
-    return {
-        "lanes": p.lanes,
-        "updates": p.updates,
-        "nodes": p.nodes,
-        "edges": p.edges,
-        "rows": p.rows,
-        "materials": p.materials,
-        "tables": p.tables,
-        "axes": p.axes,
-        "operand": p.formats.operand,
-        "state": p.formats.state,
-        "family": p.family,
-    }
+    return {**sizes_of(p), "rows": p.rows, **words_of(p.formats), "family": p.family}
 
 
 def digest(text: str) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 
 from golden.support.errors import InputError
 from golden.support.files import write_text
 from hw.link.description import description, dump, key
 from hw.parameters import Parameters
+from hw.sizes import sizes_of, words_of
 
 HEADER, PAGE, DATA = "rheogate_map.h", "rheogate_map.md", "rheogate_map.json"
 
@@ -112,7 +112,7 @@ def page(p: Parameters, about: dict) -> str:
 
 
 def _sizes(p: Parameters):
-    return [(name, getattr(p, name)) for name in p.RANGES] + list(dataclasses.asdict(p.formats).items())
+    return [*sizes_of(p).items(), *words_of(p.formats).items()]
 
 
 def _name(name: str) -> str:

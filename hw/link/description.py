@@ -10,15 +10,8 @@ from hw.link.frame import KEY_BYTES
 from hw.link.identity import IDENTITY_TEXT
 from hw.link.registers import LINK, LINK_TEXT, Link
 from hw.machine.core import datapaths, faults
-from hw.map.memory_map import (
-    ADDRESS,
-    CONTROL_TEXT,
-    READ_ONLY,
-    VERSION,
-    Control,
-    Map,
-    Region,
-)
+from hw.map.control import REGISTERS, VERSION
+from hw.map.memory_map import ADDRESS, Map, Region
 from hw.parameters import Parameters
 
 
@@ -29,19 +22,19 @@ def description(p: Parameters) -> dict:
         "map_version": VERSION,
         "address": _address(),
         "regions": [_region(memory, region) for region in Region],
-        "registers": [_register(r, r in READ_ONLY, CONTROL_TEXT) for r in Control],
+        "registers": [_register(r, not row.writable, row.meaning) for r, row in REGISTERS.items()],
         "faults": [{"bit": bit, "name": name} for bit, name in enumerate(faults(*datapaths(p)))],
         "formats": [{"name": q.name, **_format(q), "unit": q.unit} for q in p.formats.all()],
         "link": {
             "version": protocol.VERSION,
             "region": LINK,
-            "registers": [_register(r, False, LINK_TEXT) for r in Link],
+            "registers": [_register(r, False, LINK_TEXT[r]) for r in Link],
             "operations": _numbered(protocol.OPERATION_TEXT),
             "kinds": _numbered(protocol.KIND_TEXT),
             "statuses": _numbered(protocol.STATUS_TEXT),
             "busy": protocol.BUSY,
             "head": _fields(protocol.HEAD),
-            "identity": [{"item": n, "name": name, "meaning": text} for n, (name, text) in enumerate(IDENTITY_TEXT)],
+            "identity": _listed(IDENTITY_TEXT),
         },
     }
 
@@ -55,12 +48,16 @@ def dump(contents: dict) -> str:
     return json.dumps(contents, indent=1) + "\n"
 
 
-def _register(register, read_only, texts):
+def _listed(texts):
+    return [{"item": number, "name": name, "meaning": text} for number, (name, text) in enumerate(texts.items())]
+
+
+def _register(register, read_only, meaning):
     return {
         "index": register.value,
         "name": register.name,
         "read_only": read_only,
-        "meaning": texts[register],
+        "meaning": meaning,
     }
 
 

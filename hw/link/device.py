@@ -13,7 +13,8 @@ from hw.link.registers import LINK, LinkRegisters
 from hw.link.send import FrameSender
 from hw.link.walk import Walker
 from hw.machine.host_port import host_signature
-from hw.map.memory_map import ADDRESS, Control, Region, join
+from hw.map.control import Control
+from hw.map.memory_map import ADDRESS, Region, join
 
 
 class Device(wiring.Component):

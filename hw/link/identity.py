@@ -1,85 +1,79 @@
-"""Who answers a greeting: the circuit, in items."""
+"""The identity of a circuit: what it answers a greeting, in items."""
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 
 from golden.datapath.formats import Formats
 from hw.link.frame import KEY_BYTES
 from hw.link.protocol import VERSION as PROTOCOL
-from hw.map.memory_map import MAGIC, VERSION
+from hw.map.control import MAGIC, VERSION
 from hw.parameters import Parameters
+from hw.sizes import SIZES, WORDS, sizes_of, words_of
+
+CIRCUIT = {size.name: size.meaning for size in SIZES.values()} | WORDS
+"""Every number that tells one circuit from another, and its meaning."""
 
 PART = KEY_BYTES // 2
 """Bytes of the key in an item."""
 
-IDENTITY_TEXT = (
-    ("magic", "`RHEO`"),
-    ("protocol", "version of what is said over the link"),
-    ("map_version", "of the memory map"),
-    ("key_low", f"first {PART} bytes of the hash of the memory map, lowest first"),
-    ("key_high", f"its other {PART}"),
-    ("lanes", "edge processors"),
-    ("updates", "nodes updated per cycle"),
-    ("nodes", "capacity"),
-    ("edges", "capacity"),
-    ("materials", "capacity"),
-    ("tables", "capacity"),
-    ("operand", "bits of a multiplier's operand: the formats follow from it"),
-    ("state", "and from this, the bits of a word"),
-    ("clock_hz", "clock cycles a second"),
-    ("bit_cycles", "clock cycles of a bit on the line"),
-)
+IDENTITY_TEXT = {
+    "magic": "`RHEO`",
+    "protocol": "version of the link's protocol",
+    "map_version": "version of the memory map",
+    "key_low": f"first {PART} bytes of the hash of the memory map, lowest first",
+    "key_high": f"its other {PART}",
+    **CIRCUIT,
+    "clock_hz": "clock cycles a second",
+    "bit_cycles": "clock cycles of a bit on the line",
+}
+"""The items of an identity in their order, and their meaning."""
 
 
 @dataclass(frozen=True)
 class Identity:
-    """The items in their order; what they mean is in `IDENTITY_TEXT`."""
+    """The identity of a circuit.
+
+    Attributes
+    ----------
+    magic, protocol, map_version : int
+    key : bytes
+    circuit : dict
+        Its sizes and word lengths, by name: those of `CIRCUIT`.
+    clock_hz, bit_cycles : int
+    """
 
     magic: int
     protocol: int
     map_version: int
-    key_low: int
-    key_high: int
-    lanes: int
-    updates: int
-    nodes: int
-    edges: int
-    materials: int
-    tables: int
-    operand: int
-    state: int
+    key: bytes
+    circuit: dict[str, int]
     clock_hz: int
     bit_cycles: int
 
     @classmethod
     def of(cls, p: Parameters, key: bytes, clock_hz: int, bit_cycles: int) -> Identity:
-        low, high = (int.from_bytes(part, "little") for part in (key[:PART], key[PART:]))
-        sizes = (getattr(p, name) for name in p.RANGES)
-        return cls(
-            MAGIC, PROTOCOL, VERSION, low, high, *sizes, p.formats.operand, p.formats.state, clock_hz, bit_cycles
-        )
+        return cls(MAGIC, PROTOCOL, VERSION, key, sizes_of(p) | words_of(p.formats), clock_hz, bit_cycles)
 
     @classmethod
     def read(cls, items: list[int]) -> Identity:
-        """Raises ValueError for another number of items."""
-        if len(items) != len(fields(cls)):
-            raise ValueError(f"items must be {len(fields(cls))}, not {len(items)}")
-        return cls(*items)
+        """The identity in these items. Raises ValueError if there are more or fewer, or no key among them."""
+        if len(items) != len(IDENTITY_TEXT):
+            raise ValueError(f"items must be {len(IDENTITY_TEXT)}, not {len(items)}")
+        told = dict(zip(IDENTITY_TEXT, items, strict=True))
+        low, high = told.pop("key_low"), told.pop("key_high")
+        if (most := max(low, high)) >> 8 * PART:
+            raise ValueError(f"half a key must be below 2^{8 * PART}, not {most:#x}")
+        circuit = {name: told.pop(name) for name in CIRCUIT}
+        return cls(key=b"".join(part.to_bytes(PART, "little") for part in (low, high)), circuit=circuit, **told)
 
     @property
     def items(self) -> list[int]:
-        return list(astuple(self))
-
-    @property
-    def key(self) -> bytes:
-        return b"".join(part.to_bytes(PART, "little") for part in (self.key_low, self.key_high))
+        key = (int.from_bytes(part, "little") for part in (self.key[:PART], self.key[PART:]))
+        told = self.magic, self.protocol, self.map_version, *key, *(self.circuit[name] for name in CIRCUIT)
+        return [*told, self.clock_hz, self.bit_cycles]
 
     def parameters(self) -> Parameters:
-        """The circuit's, but for the family of its device. Raises ValueError if there can't be such a circuit."""
-        return Parameters(
-            **{name: getattr(self, name) for name in Parameters.RANGES}, formats=Formats(self.operand, self.state)
-        )
-
-
-assert tuple(field.name for field in fields(Identity)) == tuple(name for name, _ in IDENTITY_TEXT)
+        """The circuit's parameters but for its family. Raises ValueError if there can't be such a circuit."""
+        sizes, words = ({name: self.circuit[name] for name in names} for names in (SIZES, WORDS))
+        return Parameters(**sizes, formats=Formats(**words))

@@ -5,7 +5,8 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hw.machine.host_port import host_signature
-from hw.map.memory_map import Control, Region, join
+from hw.map.control import Control
+from hw.map.memory_map import Region, join
 
 
 class Pause(wiring.Component):

@@ -12,7 +12,7 @@ from hw.link.frame import GREETING, HEADER
 from hw.link.send import ANSWER_MOST, ANSWERS
 from hw.map.memory_map import ADDRESS
 
-VERSION = 1
+VERSION = 2
 ITEM_BYTES = 5
 ITEMS_MOST = (ANSWER_MOST - HEADER.size) // ITEM_BYTES - 1
 """Items of an answer behind the faults."""

@@ -8,7 +8,8 @@ from hw.blocks.memory import READ_LATENCY
 from hw.link.frame import CRC, PAYLOAD_MOST
 from hw.link.protocol import HEAD, ITEM_BYTES, ITEMS_MOST, Kind
 from hw.machine.host_port import host_signature
-from hw.map.memory_map import ADDRESS, Control, Region, join
+from hw.map.control import Control
+from hw.map.memory_map import ADDRESS, Region, join
 
 FARTHEST = PAYLOAD_MOST + ITEM_BYTES * HEAD["count"].raw_max
 """Where the payload would end, if the words of a write are not all there."""

@@ -20,8 +20,9 @@ from hw.machine.issue_register import IssueRegister
 from hw.machine.lane import COPIED, NEXT, NODE_WORDS, STAGED, Lane, latency, written
 from hw.machine.sequencer import Sequencer
 from hw.machine.updater import NodeDatapath, NodeUpdater
+from hw.map.control import COUNTERS
 from hw.map.fields import stage_bits
-from hw.map.memory_map import COUNTERS, Map, Region
+from hw.map.memory_map import Map, Region
 from hw.parameters import Parameters
 from hw.pipeline.delay import DelayLines
 

@@ -5,16 +5,8 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hw.blocks.memory import READ_LATENCY
-from hw.map.memory_map import (
-    ADDRESS,
-    COUNTERS,
-    MAGIC,
-    READ_ONLY,
-    VERSION,
-    Control,
-    Map,
-    Region,
-)
+from hw.map.control import COUNTERS, REGISTERS, Control, constants
+from hw.map.memory_map import ADDRESS, Map, Region
 from hw.pipeline.choice import choose
 from hw.pipeline.delay import DelayLines
 
@@ -31,13 +23,12 @@ LATENCY = 5 + MEMORY + 3 * CHOICE
 """Cycles from a request to its answer: request register, four of decoding, the memory, the choices."""
 
 
-ANYTIME = Control.FAULTS, Control.REFUSED, Control.STOP
+WRITABLE = [register for register, row in REGISTERS.items() if row.writable]
+ANYTIME = [register for register, row in REGISTERS.items() if row.while_busy]
 """Control registers that may be written while the machine is busy."""
 
-COUNTS = Control.ROW_COUNT, Control.NODE_COUNT, Control.RUN
+COUNTS = [register for register, row in REGISTERS.items() if row.least == 1]
 """Control registers into which 0 may not be written."""
-
-WRITABLE = [register for register in Control if register not in READ_ONLY]
 
 
 def registered_ports(m, ram, name: str, host, by_host: dict, own: dict):
@@ -81,7 +72,7 @@ class HostPort(wiring.Component):
     <region>_word : In
         What the region's memories hold at the access's address, `MEMORY` + 2 `CHOICE` cycles later.
     start, steps, stop : Out
-    busy, <counters of `hw.map.memory_map.COUNTERS`>, steps_done, fault : In
+    busy, <counters of `hw.map.control.COUNTERS`>, steps_done, fault : In
     rows, nodes, velocity_shift : Out
     """
 
@@ -178,16 +169,7 @@ class HostPort(wiring.Component):
     def _small_enough(self, data):
         """A bit for each control register: whether the data are not too great to be written into it."""
         p = self._map.parameters
-        small = {
-            Control.FAULTS: Const(1),
-            Control.REFUSED: Const(1),
-            Control.STOP: Const(1),
-            Control.ROW_COUNT: data <= p.rows,
-            Control.NODE_COUNT: data <= p.nodes,
-            Control.VELOCITY_SHIFT: data < 1 << p.formats.exponent.width - 1,
-            Control.RUN: data < 1 << 32,
-        }
-        return Cat(small.get(register, Const(0)) for register in Control)
+        return Cat(data <= row.most(p) if row.most else Const(row.writable) for row in REGISTERS.values())
 
     def _writable(self, region, index, word, lawful):
         """Whether such a word may be written; a control register, when its data are lawful."""
@@ -217,14 +199,7 @@ class HostPort(wiring.Component):
         """What a read of each control register gives."""
         p, state = self._map.parameters, len(self.read_data)
         values = {
-            Control.MAGIC: Const(MAGIC, state),
-            Control.VERSION: Const(VERSION, state),
-            Control.LANES: Const(p.lanes, state),
-            Control.UPDATES: Const(p.updates, state),
-            Control.NODES: Const(p.nodes, state),
-            Control.ROWS: Const(p.rows, state),
-            Control.MATERIALS: Const(p.materials, state),
-            Control.TABLES: Const(p.tables, state),
+            **{register: Const(value, state) for register, value in constants(p).items()},
             Control.BUSY: self.busy | self.start,
             **{counter: getattr(self, name) for counter, name in COUNTERS.items()},
             Control.STEPS_DONE: self.steps_done,

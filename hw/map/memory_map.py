@@ -7,13 +7,11 @@ from golden.datapath import records
 from golden.numbers.graph import AXES
 from golden.numbers.qformat import unsigned
 from golden.numbers.record import Record
+from hw.map.control import Control
 from hw.parameters import Parameters
 
 ADDRESS = Record({"index": unsigned(16, 0), "word": unsigned(5, 0), "lane": unsigned(3, 0), "region": unsigned(3, 0)})
 """A host address."""
-
-MAGIC = int.from_bytes(b"RHEO")
-VERSION = 1
 
 
 class Region(IntEnum):
@@ -23,65 +21,6 @@ class Region(IntEnum):
     MATERIAL = 3
     TABLE = 4
 
-
-class Control(IntEnum):
-    """Index of a control register."""
-
-    MAGIC = 0
-    VERSION = 1
-    LANES = 2
-    UPDATES = 3
-    NODES = 4
-    ROWS = 5
-    MATERIALS = 6
-    TABLES = 7
-    BUSY = 8
-    CYCLES = 9
-    ROWS_ISSUED = 10
-    EDGES_ISSUED = 11
-    NODE_WAITS = 12
-    LIST_WAITS = 13
-    END_WAITS = 14
-    STEPS_DONE = 15
-    FAULTS = 16
-    REFUSED = 17
-    ROW_COUNT = 18
-    NODE_COUNT = 19
-    VELOCITY_SHIFT = 20
-    RUN = 21
-    STOP = 22
-
-
-READ_ONLY = frozenset(control for control in Control if control <= Control.STEPS_DONE)
-
-CONTROL_TEXT = {
-    Control.MAGIC: "`RHEO`",
-    Control.VERSION: "of this map",
-    Control.LANES: "edge processors",
-    Control.UPDATES: "nodes updated per cycle",
-    Control.NODES: "capacity",
-    Control.ROWS: "capacity: edges of each lane",
-    Control.MATERIALS: "capacity",
-    Control.TABLES: "capacity: damper tables",
-    Control.BUSY: "1 while steps are run",
-    Control.CYCLES: "of the last run",
-    Control.ROWS_ISSUED: "in the last run: cycles in which the lanes took a row of edges",
-    Control.EDGES_ISSUED: "in the last run: a list's last row may lack some",
-    Control.NODE_WAITS: "cycles of the last run in which a row waited for its nodes to be updated",
-    Control.LIST_WAITS: "cycles of the last run in which the list of rows had not been read yet",
-    Control.END_WAITS: "cycles of the last run after its last row; with rows issued and the other waits all cycles",
-    Control.STEPS_DONE: "in the last run",
-    Control.FAULTS: "sticky, a bit for each name of the manifest; a 1 that is written clears it",
-    Control.REFUSED: "requests refused; any write clears it",
-    Control.ROW_COUNT: "rows of edges in use, at least 1",
-    Control.NODE_COUNT: "nodes in use, at least 1",
-    Control.VELOCITY_SHIFT: "the velocity full scale is 2^-this sizes per step",
-    Control.RUN: "a write runs so many steps, at least 1",
-    Control.STOP: "any write ends the run with its step or the next; then `STEPS_DONE` says how many were done",
-}
-
-COUNTERS = {control: control.name.lower() for control in Control if Control.CYCLES <= control <= Control.END_WAITS}
-"""What the machine counts in a run, and the names of the counters' ports."""
 
 NODE_STATE = tuple(f"{quantity}_{axis}" for quantity in "xv" for axis in AXES)
 NODE_LOAD = tuple(f"load_{axis}" for axis in AXES)

@@ -7,7 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from golden.datapath.image import Image
-from hw.map.memory_map import NODE_FORCE, NODE_STATE, Control, Map, Region
+from hw.map.control import Control
+from hw.map.memory_map import NODE_FORCE, NODE_STATE, Map, Region
 from hw.parameters import Parameters
 from sim.encode.program import Program, Write
 

@@ -8,7 +8,8 @@ from golden.datapath import records
 from golden.datapath.image import Image
 from golden.scene.capacity import most_at_a_node
 from golden.support.errors import InputError
-from hw.map.memory_map import NODE_LOAD, NODE_STATE, Control, Map, Region
+from hw.map.control import Control
+from hw.map.memory_map import NODE_LOAD, NODE_STATE, Map, Region
 from hw.parameters import Parameters
 
 Write = tuple[int, int]

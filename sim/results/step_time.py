@@ -47,9 +47,10 @@ def clock(board: str, folder=None) -> float:
 
 def _timed(scene: Scene, timing) -> dict:
     from hw.parameters import Parameters
+    from hw.sizes import sizes_of
     from sim.results.cycles import Wavefront
 
-    parameters = Parameters(**{name: getattr(timing, name) for name in Parameters.SIZES})
+    parameters = Parameters(**sizes_of(timing))
     sizes = {name: getattr(parameters, name) for name in ("lanes", "updates", "axes")} | {"clock_mhz": timing.clock_mhz}
     try:
         cycles = Wavefront(limits.encode(scene).image, parameters).per_step()

@@ -1,7 +1,6 @@
 """``python -m hw bitstream``: options, and what is written where."""
 
 import sys
-from collections.abc import Callable
 
 from golden.support.errors import InputError
 from golden.support.paths import ROOT
@@ -10,24 +9,23 @@ from hw.boards.bitstream import flow, tools
 from hw.boards.bitstream.result import KEPT, Build, table
 from hw.boards.timing.command import progress
 from hw.boards.timing.result import read, write
-from hw.parameters import Parameters
+from hw.options import add_sizes
+from hw.sizes import sizes_of
 
 OUT = ROOT / "build" / "bitstream"
 
 
-def add_options(command, whole: Callable[[str], int]) -> None:
+def add_options(command) -> None:
     command.add_argument("--board", required=True, metavar="NAME", help=" or ".join(boards.names()))
-    for name in Parameters.SIZES:
-        command.add_argument(f"--{name}", type=whole, metavar="N", help="instead of the board's")
+    add_sizes(command)
     command.add_argument("--timing-allow-fail", action="store_true", help="a bitstream even if the clock is missed")
     command.add_argument("--keep", action="store_true", help="write the figures below constraints/builds/ as well")
-    command.set_defaults(run=run)
 
 
 def run(args) -> int:
     board = boards.load(args.board)
     try:
-        parameters = board.parameters(**{name: getattr(args, name) for name in Parameters.SIZES})
+        parameters = board.parameters(**sizes_of(args))
     except ValueError as error:
         raise InputError(f"--{error}") from None
     if args.keep and parameters != board.parameters():

@@ -12,6 +12,7 @@ from hw.boards.timing.report import fmax
 from hw.boards.top import board_top
 from hw.families import cells
 from hw.parameters import Parameters
+from hw.sizes import sizes_of
 
 
 def build(
@@ -42,7 +43,7 @@ def build(
     sizes = cells.sizes(tools.synthesise(board, verilog, folder), board.family)
     result = Build(
         board=name,
-        **{size: getattr(parameters, size) for size in Parameters.SIZES},
+        **sizes_of(parameters),
         clock_mhz=mhz,
         baud=board.baud,
         **{size: getattr(sizes, size) for size in sizes.__struct_fields__},

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from hw.boards import board as boards
-from hw.boards.board import SIZES, Board, Circuit, shares, sizes_of
-from hw.parameters import counted
+from hw.boards.board import COLUMNS, Board, Circuit, cells_of, shares
+from hw.sizes import summary
 
 KEPT = boards.FOLDER / "builds"
 
@@ -49,7 +49,7 @@ def table(build: Build, board: Board) -> str:
     """What a terminal shows of a build."""
     fmax = "" if build.fmax_mhz is None else f", {build.fmax_mhz:.1f} MHz reached"
     lines = [
-        f"{build.board} ({board.device}): {counted(build)}",
+        f"{build.board} ({board.device}): {summary(build)}",
         f"clock {build.clock_mhz:g} MHz{fmax}; line {build.baud} baud",
         *(f"{name:11}{used:8} of{of:8}{used / of:6.0%}" for name, used, of in shares(build, board)),
         build.state(board),
@@ -57,7 +57,7 @@ def table(build: Build, board: Board) -> str:
     return "\n".join(lines)
 
 
-HEAD = f"| board | device | {SIZES} | clock | Fmax | LUT | FF | multipliers | block RAMs | state | run on hardware |"
+HEAD = f"| board | device | {COLUMNS} | clock | Fmax | LUT | FF | multipliers | block RAMs | state | run on hardware |"
 
 
 def published(kept: dict[str, Build]) -> str:
@@ -71,9 +71,9 @@ def published(kept: dict[str, Build]) -> str:
 
 def _cells(build: Build | None, board: Board) -> list[str]:
     if build is None:
-        return [*sizes_of(board.circuit), f"{board.clock_mhz:g} MHz", *[""] * 5, "not built yet", "no"]
+        return [*cells_of(board.circuit), f"{board.clock_mhz:g} MHz", *[""] * 5, "not built yet", "no"]
     return [
-        *sizes_of(build),
+        *cells_of(build),
         f"{build.clock_mhz:g} MHz",
         "" if build.fmax_mhz is None else f"{build.fmax_mhz:.1f} MHz",
         *(f"{used} ({used / of:.0%})" for _, used, of in shares(build, board)),

@@ -1,7 +1,6 @@
 """``python -m hw timing``: options, progress and what is written where."""
 
 import sys
-from collections.abc import Callable
 from contextlib import contextmanager
 
 from golden.support.errors import InputError
@@ -9,19 +8,19 @@ from golden.support.paths import ROOT
 from hw.boards import board as boards
 from hw.boards.timing import flow
 from hw.boards.timing.result import KEPT, Result, Smallest, table, write
-from hw.parameters import Parameters
+from hw.options import add_sizes, whole
+from hw.sizes import sizes_of
 
 OUT = ROOT / "build" / "timing"
 SEEDS = [1, 2, 3]
 MOST_JOBS = 64
 
 
-def add_options(command, whole: Callable[[str], int]) -> None:
+def add_options(command) -> None:
     what = command.add_mutually_exclusive_group(required=True)
     what.add_argument("--board", metavar="NAME", help=" or ".join(boards.timed()))
     what.add_argument("--smallest", action="store_true", help="only the sizes of the smallest circuit")
-    for name in Parameters.SIZES:
-        command.add_argument(f"--{name}", type=whole, metavar="N", help="instead of the board's")
+    add_sizes(command)
     command.add_argument(
         "--seeds",
         type=whole,
@@ -32,7 +31,6 @@ def add_options(command, whole: Callable[[str], int]) -> None:
     )
     command.add_argument("--jobs", type=whole, default=1, metavar="N", help="seeds at a time (1), 2 GB of memory each")
     command.add_argument("--keep", action="store_true", help="write the figures below constraints/timing/ as well")
-    command.set_defaults(run=run)
 
 
 def run(args) -> int:
@@ -43,7 +41,7 @@ def run(args) -> int:
             result = flow.smallest(OUT)
         print(", ".join(f"{getattr(result.sizes, name)} {name}" for name in result.sizes.__struct_fields__))
         return _written("smallest", result, args.keep)
-    chosen = {name: getattr(args, name) for name in Parameters.SIZES}
+    chosen = sizes_of(args)
     board = boards.load(args.board)
     if board.family not in boards.TIMED:
         raise InputError(

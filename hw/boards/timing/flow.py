@@ -11,6 +11,7 @@ from hw.boards.timing import report, tools
 from hw.boards.timing.frame import framed
 from hw.boards.timing.result import Result, Smallest
 from hw.parameters import Parameters
+from hw.sizes import sizes_of
 
 SMALLEST = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1, family="ecp5")
 
@@ -47,7 +48,7 @@ def measure(
     limits, sizes = board.limits_mhz, report.placed(reports[0]) - frame
     return Result(
         board=name,
-        **{size: getattr(parameters, size) for size in Parameters.SIZES},
+        **sizes_of(parameters),
         grade=board.grade,
         seeds=seeds,
         fmax_mhz=clocks,
@@ -66,4 +67,4 @@ def measure(
 def smallest(folder: Path) -> Smallest:
     """What the smallest circuit takes."""
     circuit, _ = report.sizes(tools.synthesise(framed(SMALLEST), folder, "smallest"))
-    return Smallest({size: getattr(SMALLEST, size) for size in Parameters.SIZES}, circuit)
+    return Smallest(sizes_of(SMALLEST), circuit)

@@ -9,10 +9,10 @@ from msgspec import Struct
 
 from golden.support.files import write_text
 from hw.boards import board as boards
-from hw.boards.board import SIZES, Board, Circuit, Limits, shares, sizes_of
+from hw.boards.board import COLUMNS, Board, Circuit, Limits, cells_of, shares
 from hw.boards.timing.report import Step
 from hw.families.cells import Sizes
-from hw.parameters import counted
+from hw.sizes import summary
 
 KEPT = boards.FOLDER / "timing"
 
@@ -58,7 +58,7 @@ def table(result: Result, board: Board) -> str:
     runs = ", ".join(f"{mhz:.1f}" for mhz in result.fmax_mhz)
     limits = f"multiplier {result.limits_mhz.multiplier:g} MHz, block RAM {result.limits_mhz.block_ram:g} MHz"
     lines = [
-        f"{result.board} ({board.device}, speed grade {result.grade}): {counted(result)}",
+        f"{result.board} ({board.device}, speed grade {result.grade}): {summary(result)}",
         "",
         f"Fmax    {result.fmax_min:.1f} MHz at least, {result.fmax_median:.1f} MHz median of {runs}",
         f"limits  {limits}: not seen by place and route",
@@ -74,7 +74,7 @@ def table(result: Result, board: Board) -> str:
     return "\n".join(lines)
 
 
-HEAD = f"| board | {SIZES} | LUT | FF | multipliers | block RAMs | Fmax, lowest | median | limit | clock |"
+HEAD = f"| board | {COLUMNS} | LUT | FF | multipliers | block RAMs | Fmax, lowest | median | limit | clock |"
 
 
 def published(folder: Path = KEPT) -> str:
@@ -92,7 +92,7 @@ def _cells(result: Result, board: Board) -> list[str]:
     limit = min(result.limits_mhz.multiplier, result.limits_mhz.block_ram)
     clocks = result.fmax_min, result.fmax_median, limit, result.clock_mhz
     return [
-        *sizes_of(result),
+        *cells_of(result),
         *(f"{used} ({used / available:.0%})" for _, used, available in shares(result, board)),
         *(f"{mhz:.1f} MHz" for mhz in clocks),
     ]

@@ -13,7 +13,8 @@ from hw.link.identity import Identity
 from hw.link.protocol import BUSY, Operation, Status, item, items
 from hw.link.registers import LINK, Link
 from hw.machine.core import datapaths, faults
-from hw.map.memory_map import MAGIC, Control, Map, Region, join
+from hw.map.control import MAGIC, Control
+from hw.map.memory_map import Map, Region, join
 from sim.backends.link import segments
 from sim.backends.link.errors import CommandRefused, LinkError, OtherCircuit
 from sim.backends.link.line import SerialLine
