@@ -162,7 +162,7 @@ def test_one_wrong_bit_of_an_operand_is_noticed(bench, rng):
     assert set(np.argwhere(run.results != run.expected)[:, 0]) == {row}
 
 
-def test_an_edge_behind_a_gap_is_not_disturbed_by_what_stands_in_it(bench, seed):
+def test_an_edge_after_a_gap_is_not_disturbed_by_values_in_the_gap(bench, seed):
     """The same edges give the same results close together and far apart."""
     close, apart = (Run(bench, np.random.default_rng(seed), 500, gaps) for gaps in (0, 0.9))
     assert close.differences() == [] and apart.differences() == []

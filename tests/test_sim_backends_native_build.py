@@ -44,7 +44,7 @@ def test_a_missing_compiler_is_named(tmp_path, monkeypatch):
         library(FILES, "main.cpp", tmp_path)
 
 
-def test_what_the_compiler_says_is_kept(tmp_path):
+def test_the_compilers_message_is_kept(tmp_path):
     with pytest.raises(RuntimeError, match=r"(?s)refuses main.cpp:.*NUMBER"):
         library(FILES | {"number.inc": ""}, "main.cpp", tmp_path)
     assert not list(tmp_path.iterdir())

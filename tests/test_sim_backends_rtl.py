@@ -147,7 +147,7 @@ def test_a_run_that_is_stopped_ends_with_a_step_and_goes_on_with_the_same_bits(r
     assert circuit_.read([done]).tolist() == [3]
 
 
-def test_what_the_circuit_refuses_is_an_error_here(rng, simulated):
+def test_a_refused_request_raises(rng, simulated):
     machine = simulated(random_image(rng), circuit(1))
     read_only = Map(circuit(1)).address(Region.CONTROL, 0, Control.STEPS_DONE)
     with pytest.raises(RuntimeError, match=rf"^the circuit refused a write to {read_only:#x}$"):

@@ -55,7 +55,7 @@ def shim(tmp_path, monkeypatch):
     return path
 
 
-def test_a_module_with_a_part_in_two_places_is_built_once(shim, tmp_path, monkeypatch):
+def test_a_module_with_two_instances_is_compiled_once(shim, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     folder = Path("below/here")
     built = library("quarter", BOTH, shim, folder=folder, repeated="half")

@@ -144,7 +144,7 @@ def test_compare(circuit, scene, tmp_path, capsys, monkeypatch):
         (["compare"], "compare.json"),
     ],
 )
-def test_scripts_get_the_file_itself(command, file, circuit, scene, tmp_path, capsys, monkeypatch):
+def test_json_prints_the_file_itself(command, file, circuit, scene, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(batch, "cores", lambda: 1)
     assert main([*command, scene, "--json", "--out", str(tmp_path / "out")]) == 0
     assert capsys.readouterr() == ((tmp_path / "out" / file).read_text(), "")

@@ -121,7 +121,7 @@ def test_a_coefficient_has_all_its_bits(x):
     assert np.ldexp(raw * MANTISSA, -shift) == pytest.approx(x, rel=MANTISSA)
 
 
-def test_a_coefficient_of_nothing_is_zero():
+def test_a_coefficient_of_zero_is_zero():
     assert coefficient(0.0, FMT) == (0, 0)
 
 
@@ -136,7 +136,7 @@ def test_units_are_powers_of_two_with_headroom(dim):
         np.testing.assert_allclose(units.velocity, scene.size / scene.dt * 2.0**-units.velocity_shift, rtol=1e-15)
 
 
-def test_the_image_is_in_this_order():
+def test_the_image_is_in_the_encoded_order():
     scene = mixed()
     loaded = encode(scene)
     node_order, edge_order = order(scene.mesh.points, scene.mesh.edges)

@@ -48,7 +48,7 @@ def test_a_switch_keeps_the_force_and_goes_on_as_the_model_does(names):
     machine.close()
 
 
-def test_there_must_be_as_many_as_there_were():
+def test_a_switch_must_bring_as_many_materials_as_the_scene_has():
     loaded = encode(block("rheological"))
     with pytest.raises(InputError, match="materials must be 1, as many as there were, not 2"):
         switch(loaded, None, (MATERIALS["rheological"],) * 2)

@@ -99,7 +99,7 @@ def test_three_hundred_meshes(shape, seed):
 @pytest.mark.campaign
 @pytest.mark.parametrize("updates", [1, 2])
 @pytest.mark.parametrize("name", MESHES)
-def test_the_benchmarks_meshes_take_the_cycles_that_it_says(name, updates):
+def test_the_benchmarks_meshes_take_the_cycles_of_the_model(name, updates):
     scene = meshes.scene(name)
     parameters = Parameters(lanes=4, updates=updates, nodes=1024)
     machine = rtl_machine(encode(scene).image, parameters=parameters, folder=BUILD)
@@ -115,7 +115,7 @@ def test_the_benchmarks_meshes_take_the_cycles_that_it_says(name, updates):
 
 
 @pytest.mark.parametrize("shape", CIRCUITS)
-def test_every_step_takes_as_long(shape, seed):
+def test_all_steps_take_the_same_time(shape, seed):
     """`Wavefront.per_step` needs steps of equal length; no proof says that all lists have them, so many are tried."""
     parameters = circuit(*shape)
     latencies = Latencies.of(parameters)

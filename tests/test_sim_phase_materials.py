@@ -47,7 +47,7 @@ def test_a_phase_of_a_scene_file_brings_materials(tmp_path):
     assert press.materials is None and [m.c1 for m in release.materials] == [2.0] and scene.materials[0].c1 == 1.0
 
 
-def test_others_stay_what_they_are(tmp_path):
+def test_other_materials_stay(tmp_path):
     text = scene_text.changed(scene_text.SCENE, scene_text.GEL, scene_text.TWO)
     scene = loaded(tmp_path, scene_text.changed(text, PHASE, BROUGHT))
     gel, clay = scene.phases[1].materials
@@ -77,14 +77,14 @@ def test_others_stay_what_they_are(tmp_path):
         ),
     ],
 )
-def test_what_is_wrong_with_them_is_named(tmp_path, old, new, message):
+def test_mistakes_in_a_phases_materials_are_named(tmp_path, old, new, message):
     text = scene_text.changed(scene_text.SCENE, PHASE, BROUGHT)
     with pytest.raises(InputError) as error:
         loaded(tmp_path, scene_text.changed(text, old, new))
     assert message in str(error.value)
 
 
-def test_an_archive_has_them(tmp_path):
+def test_an_archive_keeps_a_phases_materials(tmp_path):
     scene = switching()
     archive.save(scene, tmp_path / "scene.npz")
     assert [p.materials for p in archive.load(tmp_path / "scene.npz").phases] == [p.materials for p in scene.phases]

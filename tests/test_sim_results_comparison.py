@@ -122,7 +122,7 @@ def test_a_flag_of_the_circuit_is_a_saturation(monkeypatch):
     assert shortcomings(entry) == ["saturated: velocity"]
 
 
-def test_a_run_that_there_is_is_not_run_again(circuit):
+def test_an_existing_run_is_not_repeated(circuit):
     scene = block(steps=(10, 5, 5), every=10)
     fixed, told = run(scene, "fixed"), []
     result = complete(scene, {"fixed": fixed}, ("float",), progress=lambda doing, steps: told.append(doing))
@@ -158,7 +158,7 @@ def test_power(x, text):
     assert power(x) == text
 
 
-def test_comparing_tells_how_far_it_is(circuit):
+def test_a_comparison_reports_its_progress(circuit):
     told = []
     compare(block(steps=(10, 5, 5), every=10), progress=lambda backend, steps: told.append((backend, steps)))
     assert [backend for n, (backend, _) in enumerate(told) if told[n - 1][0] != backend] == [
@@ -225,7 +225,7 @@ def refuse(scene, progress):
 
 
 @pytest.mark.parametrize("cores", [1, 2])
-def test_a_batch_keeps_the_order_and_tells_its_progress(cores, monkeypatch):
+def test_a_batch_keeps_the_order_and_reports_its_progress(cores, monkeypatch):
     monkeypatch.setattr(batch, "cores", lambda: cores)
     told, names = [], ["a", "b", "c"]
     results = batch.over_scenes(count, [named(name) for name in names], lambda *args: told.append(args))

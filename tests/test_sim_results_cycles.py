@@ -36,14 +36,14 @@ def test_entries_are_issued_in_order():
         ((9, 9), 4, 2, 0.60),
     ],
 )
-def test_lanes_are_as_busy_as_is_promised(nodes, lanes, updates, least):
+def test_lanes_reach_the_promised_occupancy(nodes, lanes, updates, least):
     model, _ = wavefront(nodes, lanes, updates)
     print(f"{nodes}: {model.per_step()} cycles a step, occupancy {model.occupancy():.4f}")
     assert least <= model.occupancy() <= 1
 
 
 @pytest.mark.parametrize("lanes", [1, 2, 4, 6])
-def test_a_step_takes_no_less_than_its_rows_its_nodes_and_its_loop(lanes):
+def test_a_step_takes_at_least_its_rows_its_nodes_and_its_loop(lanes):
     for nodes in ((4, 4), (9, 9), (4, 4, 4)):
         model, image = wavefront(nodes, lanes)
         rows = -(-len(image.edges) // lanes)
@@ -52,13 +52,13 @@ def test_a_step_takes_no_less_than_its_rows_its_nodes_and_its_loop(lanes):
         assert 0 < np.diff(model.run(5)).max() <= model.run(1)[0]
 
 
-def test_with_latencies_of_nothing_the_longer_list_says_how_long_a_step_takes():
+def test_without_latencies_the_longer_list_sets_the_time_of_a_step():
     model, image = wavefront((9, 9), 1, latencies=Latencies(0, 0, 0, 0))
     assert model.per_step() == RK4.stages * len(image.edges)
     assert model.run(3)[-1] + ISSUE_LATENCY >= 3 * model.per_step()
 
 
-def test_with_an_axis_at_a_time_nodes_say_how_long_a_step_takes_where_they_have_few_edges():
+def test_with_one_axis_at_a_time_nodes_with_few_edges_set_the_time_of_a_step():
     """Two-dimensional objects have less than three edges a node, three-dimensional ones more."""
     for nodes, longer in (((9, 9), "nodes"), ((5, 5, 5), "edges")):
         model, image = wavefront(nodes, 1, latencies=Latencies(0, 0, 0, 0), axes=1)

@@ -37,7 +37,7 @@ def _power(model):
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("material", ["viscoelastic", "rheological", "rheological-force"])
-def test_what_is_missing_has_become_heat(material, dim):
+def test_missing_energy_has_become_heat(material, dim):
     scene = block(material, dim, steps=(200, 50, 300), every=1, mass=0.01, gravity=(-9.81, *[0.0] * (dim - 1)))
     result = energy.energies(scene, run(scene, "float").trajectory)
     expected = heat(scene)
@@ -64,7 +64,7 @@ def test_heat_does_not_come_back(material):
     assert all(result[name].min() >= 0 for name in ("kinetic", "elastic"))
 
 
-def test_a_load_works_along_its_way():
+def test_the_work_of_a_load_is_force_times_distance():
     """A constant force on a free object: its work is force times distance, and all of it is accounted for."""
     m = MESHES[2]
     scene = objects.scene(
@@ -83,7 +83,7 @@ def test_a_load_works_along_its_way():
     np.testing.assert_allclose(result["dissipated"], heat(scene), atol=1e-3 * result["work"][-1])
 
 
-def test_gravity_is_the_height_of_the_weight():
+def test_the_energy_of_gravity_is_weight_times_height():
     m = MESHES[3]
     scene = objects.scene(m, MATERIALS["plastic"], DT, [objects.phase(m, 200)], mass=0.02, gravity=(0, 0, -9.81))
     trajectory = run(scene, "float").trajectory

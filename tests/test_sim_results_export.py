@@ -32,7 +32,7 @@ def run(request, tmp_path):
     return tmp_path / "run"
 
 
-def test_every_frame_is_there(run, capsys):
+def test_every_frame_has_a_file(run, capsys):
     capsys.readouterr()
     assert main(["export", str(run), "--vtu"]) == 0
     scene, _, kept = run_folder.load(run)
@@ -48,7 +48,7 @@ def test_every_frame_is_there(run, capsys):
     assert {path.name for path in folder.iterdir()} == {MARK, "run.pvd", *names}
 
 
-def test_a_frame_is_the_runs(run):
+def test_a_file_holds_the_runs_frame(run):
     main(["export", str(run), "--vtu"])
     scene, _, kept = run_folder.load(run)
     dim, element = scene.dim, {2: "triangle", 3: "tetra"}[scene.dim]

@@ -106,7 +106,7 @@ def test_trial_forces_of_several_materials_have_no_common_unit():
     assert ranges.in_si("trial full scale", replace(units, trial=(1.0, 2.0))) == (1.0, "full scale")
 
 
-def test_the_steps_that_are_looked_at():
+def test_sampled_steps():
     scene = block(steps=(400, 3, 300), every=1)
     frames = ranges.sampled(scene)
     assert ranges.SAMPLES <= len(frames) <= ranges.SAMPLES + 2

@@ -58,7 +58,7 @@ def test_a_folder_that_is_no_run_is_refused(kept, missing):
     refused(folder, f"RUN must be a folder that `python -m sim run` left, not {folder}: it has no {missing}")
 
 
-def test_no_folder_is_refused(tmp_path):
+def test_a_missing_folder_is_refused(tmp_path):
     refused(
         tmp_path / "x",
         f"RUN must be a folder that `python -m sim run` left, not {tmp_path / 'x'}: it has no summary.json",

@@ -31,7 +31,7 @@ def kept(folder, scene=SCENE, backend="fixed"):
 
 @pytest.mark.parametrize("scene", [SCENE, SOLID], ids=lambda scene: scene.name)
 @pytest.mark.parametrize("backend", ["float", "fixed", "rtl"])
-def test_a_run_is_the_same_when_it_is_taken_up(tmp_path, scene, backend):
+def test_a_run_is_the_same_when_it_is_loaded(tmp_path, scene, backend):
     result = kept(tmp_path / "run", scene, backend)
     again, found = run_folder.load_result(tmp_path / "run")
     assert again.name == scene.name

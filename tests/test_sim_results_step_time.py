@@ -75,7 +75,7 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     }
 
 
-def test_a_board_whose_updater_takes_an_axis_at_a_time_says_so_and_takes_longer(tmp_path):
+def test_a_board_that_updates_one_axis_at_a_time_takes_longer(tmp_path):
     def timed(axes):
         (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"axes": axes, "lanes": 4}))
         return next(board for board in steptime.on_boards(block(), tmp_path) if board["timed"])

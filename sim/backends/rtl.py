@@ -92,5 +92,5 @@ def check_room(encoded: EncodedScene, parameters: Parameters) -> None:
     """Raise `InputError` for an object that is larger than a circuit, with the materials of any phase."""
     from sim.encode.program import Program  # the memory map is slow to load
 
-    for phase in (encoded, *limits.later(encoded)):
+    for phase in (encoded, *limits.later_materials(encoded)):
         Program(phase.image, parameters)

@@ -10,7 +10,7 @@ from golden.physics.scene import Scene
 from golden.support.errors import InputError
 from sim.encode import encode as encoding
 from sim.encode.encode import EncodedScene
-from sim.encode.switch import prepared
+from sim.encode.switch import with_materials
 
 
 def encode(scene: Scene, edge_order: np.ndarray | None = None) -> EncodedScene:
@@ -25,16 +25,16 @@ def encode(scene: Scene, edge_order: np.ndarray | None = None) -> EncodedScene:
         raise
     except (ValueError, OverflowError) as error:
         raise InputError(f"the scene must have numbers that the circuit can hold: {error}") from None
-    for held in (encoded, *later(encoded)):
+    for held in (encoded, *later_materials(encoded)):
         record = records.material(held.image.formats, len(held.image.damper["rho_value"]))
         for material, fields in zip(held.scene.materials, held.image.materials, strict=True):
             _check(record, fields, f"materials.{material.name} must have coefficients")
     return encoded
 
 
-def later(encoded: EncodedScene) -> list[EncodedScene]:
+def later_materials(encoded: EncodedScene) -> list[EncodedScene]:
     """Return the scene with the materials that each later phase brings, as it would be at its own start."""
-    return [prepared(encoded, materials) for materials in encoded.scene.material_sets[1:]]
+    return [with_materials(encoded, materials) for materials in encoded.scene.material_sets[1:]]
 
 
 def _check_speed(scene: Scene) -> None:

@@ -34,7 +34,7 @@ def switch(encoded: EncodedScene, machine, materials: tuple[Material, ...]) -> E
         If there are more or fewer materials, one needs a smaller time step, or has forces or coefficients that the
         units of this run can't hold.
     """
-    after, fmt = prepared(encoded, tuple(materials)), encoded.image.formats
+    after, fmt = with_materials(encoded, tuple(materials)), encoded.image.formats
     image = replace(
         after.image, x=machine.x, v=machine.v, length=encoded.image.length.copy(), ratio=machine.ratio.copy()
     )
@@ -50,7 +50,7 @@ def switch(encoded: EncodedScene, machine, materials: tuple[Material, ...]) -> E
     return replace(after, image=image)
 
 
-def prepared(encoded: EncodedScene, materials: tuple[Material, ...]) -> EncodedScene:
+def with_materials(encoded: EncodedScene, materials: tuple[Material, ...]) -> EncodedScene:
     """Return the scene with other materials, as it would be at its start. Raises `InputError` as `switch`."""
     scene, fmt = replace(encoded.scene, materials=materials), encoded.image.formats
     if len(materials) != len(encoded.scene.materials):
