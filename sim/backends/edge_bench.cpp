@@ -1,5 +1,5 @@
-// The Verilated edge processor alone, for ctypes: a batch of edges per call. sim/backends/edge_bench.py puts the lists of ports in
-// front: INPUTS(X) has an X(name, bits, cycle) for each, OUTPUTS(X) an X(name, bits, cycle).
+// The Verilated edge processor alone, for ctypes: a batch of edges per call. sim/backends/edge_bench.py puts the lists
+// of ports in front of this file: INPUTS(X) and OUTPUTS(X) have an X(name, bits, cycle) for each port.
 #include "Vrheogate_edge.h"
 #include "verilated.h"
 #include <cstdint>
@@ -9,7 +9,7 @@ struct Bench {
     Vrheogate_edge top{&context};
     uint64_t noise = 0x9E3779B97F4A7C15;
 
-    // What stands at an input while no edge wants it
+    // The value of an input in cycles in which no edge is sampled
     uint64_t random() {
         noise ^= noise << 13; noise ^= noise >> 7; noise ^= noise << 17;
         return noise;
@@ -47,8 +47,8 @@ void bench_table(Bench *b, int half, long n, const uint64_t *words) {
     b->top.table_write = 0;
 }
 
-// entry[cycle]: the row of `vectors` that enters then, or -1. A row of `results` is written output by output, each in
-// its cycle; `faults` has what is on the fault port in each cycle. Ends with as many cycles without an entry as it takes.
+// entry[cycle]: the row of `vectors` that enters in that cycle, or -1. A row of `results` is written output by output,
+// each in its cycle; `faults` gets the fault port of each cycle. The last entries are -1 until the pipeline is empty.
 void bench_run(Bench *b, int velocity_shift, long cycles, const int64_t *entry, const int64_t *vectors,
                int64_t *results, uint32_t *faults) {
     auto &top = b->top;

@@ -1,5 +1,5 @@
-// A run of the integer model: what golden/datapath/machine.py does, compiled. edge.inc and node.inc are written by
-// sim/backends/native_source.py from the graphs of the datapath; their names are those of the equations.
+// The integer model of golden/datapath/machine.py, compiled. sim/backends/native_source.py writes edge.inc and node.inc
+// from the graphs of the datapath; their names are those of the equations.
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -17,7 +17,7 @@ struct Edge {
     const Int *material;
 };
 
-// What is the same for all nodes and edges
+// Shared by all nodes and edges
 struct Common {
     Int velocity_shift;
     const Int *inverse, *damper;
@@ -42,10 +42,10 @@ static inline Int shift_right(Int raw, Int drop, Int right, Int low, Int high, I
     return saturate(cut ? raw >> by : round_half_up(raw, by), raw >> by, low, high, fault);
 }
 
-// Bits that repeat the sign become 0
+// Clears the bits that repeat the sign
 static inline Int magnitude(Int raw) { return raw ^ raw >> 63; }
 
-// How far integers of `bits` bits and a sign can be shifted left, at most `most`, given the OR of their magnitudes
+// The left shift, at most `most`, that integers of `bits` bits and a sign allow, given the OR of their magnitudes
 static inline Int lead(Int magnitudes, Int bits, Int most) {
     const Int left = bits - (magnitudes ? 64 - __builtin_clzll(magnitudes) : 0);
     return left < most ? left : most;
@@ -83,7 +83,7 @@ static void run_step(const Common &common, std::vector<Node> &nodes, std::vector
     (run_stage<stage>(common, nodes, edges), ...);
 }
 
-// x, v, load, force: (nodes, 3); ends: (edges, 2); tables and records: one word after the other, a field an integer
+// x, v, load, force: (nodes, 3); ends: (edges, 2); tables and records: word after word, each field an integer
 extern "C" void run(Int steps, Int node_count, Int edge_count, Int velocity_shift, Int *x, Int *v, Int *ratio,
                     Int *force, const Int *load, const Int *inverse_mass, const Int *ends, const Int *edge_material,
                     const Int *length, const Int *materials, const Int *inverse, const Int *damper, Int *faults) {

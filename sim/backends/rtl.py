@@ -11,6 +11,7 @@ from pathlib import Path
 from golden.support import paths
 from golden.support.errors import InputError
 from hw.parameters import Parameters
+from hw.sizes import SIZES, Size
 from sim.backends import waves
 from sim.backends.backend import IntegerBackend, Option
 from sim.backends.machine import ClockedMachine
@@ -21,12 +22,14 @@ from sim.support.arguments import whole
 BUILD = paths.BUILD / "rtl"
 """Folder of the compiled circuits."""
 LANES, UPDATES = 2, 1
-SIZES = (
-    Option("lanes", f"edge processors of the circuit ({LANES})", {"type": whole, "metavar": "P"}),
-    Option(
-        "updates", f"nodes that the circuit updates in a cycle, 1 or 2 ({UPDATES})", {"type": whole, "metavar": "M"}
-    ),
-)
+
+
+def _size_option(size: Size, default: int) -> Option:
+    keywords = {"type": whole, "metavar": size.letter}
+    return Option(size.name, f"{size.meaning}, {size.choice} ({default})", keywords)
+
+
+SIZE_OPTIONS = _size_option(SIZES["lanes"], LANES), _size_option(SIZES["updates"], UPDATES)
 WAVES = Option(
     "waves",
     "write the waveforms of the circuit's first 5000 busy cycles as well (vcd, which is larger but needs no library)",
@@ -49,7 +52,7 @@ class RtlBackend(IntegerBackend):
     words = "Verilog in simulation"
     summary = "the circuit's Verilog under Verilator"
     compared = True
-    options = *SIZES, WAVES
+    options = *SIZE_OPTIONS, WAVES
 
     @classmethod
     def from_options(cls, args: Namespace, out: Path) -> RtlBackend:

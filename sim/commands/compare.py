@@ -18,7 +18,7 @@ HELP = "run scenes on all backends side by side and report the differences"
 def add_options(command: ArgumentParser) -> None:
     """Add the command's options."""
     command.add_argument("scenes", nargs="+", metavar="SCENE", help="scene files (TOML)")
-    for size in rtl.SIZES:
+    for size in rtl.SIZE_OPTIONS:
         size.add_to(command)
     add_out(command, "build/report", "folder for compare.json and index.html")
     add_json(command, "compare.json instead of a table")

@@ -15,7 +15,7 @@ def add_options(command: ArgumentParser) -> None:
     command.add_argument(
         "--port", type=port_number, default=0, metavar="PORT", help="of this machine (one that is free)"
     )
-    for size in rtl.SIZES:
+    for size in rtl.SIZE_OPTIONS:
         size.add_to(command)
 
 

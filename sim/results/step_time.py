@@ -51,10 +51,11 @@ def _timed(scene: Scene, timing) -> dict:
     from sim.results.cycles import Wavefront
 
     parameters = Parameters(**sizes_of(timing))
-    sizes = {name: getattr(parameters, name) for name in ("lanes", "updates", "axes")} | {"clock_mhz": timing.clock_mhz}
+    sizes = {"lanes": parameters.lanes, "updates": parameters.updates, "axes": parameters.axes}
+    entry = sizes | {"clock_mhz": timing.clock_mhz}
     try:
         cycles = Wavefront(limits.encode(scene).image, parameters).per_step()
-    except InputError:  # too small for it
-        return sizes | {"fits": False}
+    except InputError:  # the circuit is too small
+        return entry | {"fits": False}
     step_us = cycles / timing.clock_mhz
-    return sizes | {"fits": True, "cycles_per_step": cycles, "step_us": step_us, "real_time": scene.dt * 1e6 / step_us}
+    return entry | {"fits": True, "cycles_per_step": cycles, "step_us": step_us, "real_time": scene.dt * 1e6 / step_us}
