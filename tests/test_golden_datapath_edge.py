@@ -14,7 +14,6 @@ from golden.datapath.rk4 import RK4
 from golden.datapath.tables import Tables, inverse_table
 from golden.numbers.qarray import QArray
 from golden.numbers.qformat import BIT
-from golden.physics.materials import solve_damper
 from sim.encode.coefficients import coefficients
 from sim.encode.encode import stack
 from sim.encode.units import Units
@@ -85,14 +84,14 @@ class Edges:
         u = d / l
         ldot = (u * w).sum(axis=0)
         g = m.k * (a * l - rest) + m.c1 * ldot
-        sigma, rho = solve_damper(m.c1, m.c_max, m.c_min, m.f1, m.f2, g)
-        if np.isinf(m.c_max):
+        rho, sigma = m.rho_sigma(g)
+        if np.isinf(m.damper.c_max):
             adot = (1 - a) * ldot / l  # the limit of (3): the damper part keeps its length
         else:
             c2 = rho / sigma
             adot = (-m.k * (a * l - rest) - (m.c1 * a - c2 * (1 - a)) * ldot) / ((m.c1 + c2) * l)
         f = -m.k * (a * l - rest) - m.c1 * (adot * l + a * ldot)
-        if np.isfinite(m.c_max):
+        if np.isfinite(m.damper.c_max):
             np.testing.assert_allclose(-c2 * (-adot * l + (1 - a) * ldot), f, rtol=1e-9, atol=1e-12)  # equation (2)
         return SimpleNamespace(d=d, w=w, a=a, l=l, rest=rest, u=u, g=g, f=f, adot=adot * step, rho=rho, sigma=sigma)
 
@@ -119,9 +118,9 @@ def bounds(edges, exact):
     full = edges.units.trial[0]
     stretch = 11 * e.a * e.l + e.l + 5 * np.abs(e.a * e.l - e.rest)
     g = EPS * (m.k * stretch + 26 * m.c1 * speed) + m.k * edges.units.size * FMT.length.lsb + full * FMT.trial.lsb
-    table = 0 if m.linear else 1e-4
+    table = 1e-4 if m.damper.force_dependent else 0
     pull = e.rho * g + np.abs(e.f) * ((5 + 14) * EPS + table) + edges.units.force * FMT.force.lsb
-    creep = (e.sigma if m.linear else 1 / m.c1) * g + (5 * EPS + table) * e.sigma * np.abs(e.g)
+    creep = (1 / m.c1 if m.damper.force_dependent else e.sigma) * g + (5 * EPS + table) * e.sigma * np.abs(e.g)
     rates = 26 * EPS * speed + creep + edges.units.velocity * FMT.creep.lsb
     adot = rates / e.l * edges.units.dt + (10 + 4) * EPS * np.abs(e.adot) + FMT.ratio.lsb
     return pull, adot

@@ -13,8 +13,8 @@ from golden.datapath.formats import Formats
 from golden.datapath.tables import Tables, damper_table, inverse_table, octave, octave_inverse
 from golden.numbers.block import magnitude
 from golden.numbers.qarray import QArray
-from golden.physics.materials import PRESETS, solve_damper
-from sim.encode.coefficients import coefficients, middle_branch
+from golden.physics.materials import PRESETS
+from sim.encode.coefficients import coefficients
 from sim.encode.encode import stack
 from sim.encode.units import Units
 
@@ -70,7 +70,7 @@ class Lookup:
 
     def __init__(self, material):
         self.material = m = material
-        self.g1, self.g2 = m.f1 * (1 + m.c1 / m.c_max), m.f2 * (1 + m.c1 / m.c_min)
+        self.g1, self.g2 = m.knees
         self.full = 2.0 ** np.ceil(np.log2(self.g2))
         self.units = Units(size=0.1, centre=None, dt=2e-4, velocity_shift=9, force=4.0, trial=(self.full,))
         self.record, self.table = coefficients(m, 0, self.units, FMT, 0)
@@ -99,7 +99,7 @@ class Lookup:
 def test_the_damper_is_that_of_the_exact_law_to_a_ten_thousandth(name):
     m, lookup = DAMPERS[name], Lookup(DAMPERS[name])
     g, rho, sigma = lookup(lookup.everywhere())
-    exact_sigma, exact_rho = solve_damper(m.c1, m.c_max, m.c_min, m.f1, m.f2, g)
+    exact_rho, exact_sigma = m.rho_sigma(g)
     errors = np.abs(rho / exact_rho - 1), np.abs(sigma / exact_sigma - 1)
     print(
         f"{name}: largest relative error of rho {errors[0].max():.2g}, of sigma {errors[1].max():.2g}; "
@@ -144,7 +144,7 @@ def test_no_segment_contains_a_kink(name):
         segment = int(np.searchsorted(places, octave(g / lookup.full), side="right")) - 1
         assert 0 <= segment < SEGMENTS
         start, end = lookup.full * octave_inverse(places[segment : segment + 2])
-        rho, sigma = middle_branch(lookup.material, start + fraction * (end - start))
+        rho, sigma = lookup.material.damper.middle_rho_sigma(lookup.material.c1, start + fraction * (end - start))
         np.testing.assert_allclose(straight(table.words, "rho", -1, segment, fraction), rho, rtol=1e-4)
         creep = straight(table.words, "sigma", 1, segment, fraction) * 2.0 ** -lookup.record["creep_shift"]
         np.testing.assert_allclose(creep * lookup.units.velocity / (2 * lookup.full), sigma, rtol=1e-4)

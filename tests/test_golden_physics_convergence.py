@@ -47,7 +47,8 @@ def run(problem, velocity, time, steps):
 
 def c2_of_7(problem, voigt, ldot, c1):
     """c2 of each edge, (7) at the force f for which (1) and (2) agree, by bisection of |f|."""
-    c_max, c_min, f1, f2 = (problem.per_edge(name) for name in ("c_max", "c_min", "f1", "f2"))
+    c_max, c_min = problem.per_edge(lambda m: m.damper.c_max), problem.per_edge(lambda m: m.damper.c_min)
+    f1, f2 = problem.per_edge(lambda m: m.damper.f1), problem.per_edge(lambda m: m.damper.f2)
 
     def c2(f):
         return c_max * (c_min / c_max) ** ((np.clip(f, f1, f2) - f1) / (f2 - f1))
@@ -64,7 +65,7 @@ def c2_of_7(problem, voigt, ldot, c1):
 def reference(problem, velocity, time, method, linear=True, **tolerances):
     """State at `time` by a solver of SciPy."""
     points, edges, n = problem.mesh.points, problem.mesh.edges, len(problem.mesh.points)
-    k, c1, a0 = (problem.per_edge(name) for name in ("k", "c1", "a0"))
+    k, c1, a0 = map(problem.per_edge, (lambda m: m.k, lambda m: m.c1, lambda m: m.a0))
     natural = a0 * np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
     free = ~problem.phases[0].fixed
 
@@ -75,7 +76,7 @@ def reference(problem, velocity, time, method, linear=True, **tolerances):
         length = np.sqrt((apart**2).sum(axis=1))
         ldot = ((v[edges[:, 1]] - v[edges[:, 0]]) * apart).sum(axis=1) / length
         voigt = k * (a * length - natural)
-        c2 = problem.per_edge("c_max") if linear else c2_of_7(problem, voigt, ldot, c1)
+        c2 = problem.per_edge(lambda m: m.damper.c_max) if linear else c2_of_7(problem, voigt, ldot, c1)
         a_rate = (-voigt - (c1 * a - c2 * (1 - a)) * ldot) / ((c1 + c2) * length)  # (3)
         f = -voigt - c1 * (a_rate * length + a * ldot)  # (1)
         for e, (i, j) in enumerate(edges):

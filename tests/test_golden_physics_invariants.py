@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from golden.mesh import mesh
+from golden.physics.dampers import Linear
 from golden.physics.materials import Material, plastic, rheological, rheological_force, viscoelastic
 from golden.physics.model import Model, simulate
 from tests.golden_objects import phase, scene
@@ -141,11 +142,11 @@ class Watched(Model):
 
 @pytest.mark.parametrize("dim", GRIDS)
 def test_ratios_stay_within_their_bounds_in_every_stage(rng, dim):
-    loose = Material("loose", 20.0, 0.3, 0.5, 0.5, np.inf, np.inf, 0.0, 1.0, 0.5)
+    loose = Material("loose", 20.0, 0.3, Linear(0.5), 0.0, 1.0, 0.5)
     tight = replace(loose, name="tight", a_min=0.48, a_max=0.53)
     materials = [loose, tight, replace(FORCE, a_min=0.49, a_max=0.5)]
     problem, velocity = free_object(rng, GRIDS[dim], materials, steps=100)
-    low, high = problem.per_edge("a_min"), problem.per_edge("a_max")
+    low, high = problem.per_edge(lambda m: m.a_min), problem.per_edge(lambda m: m.a_max)
     model = Watched(problem)
     model.v = 3 * velocity
     for _ in range(problem.steps):
@@ -162,4 +163,4 @@ def test_an_object_at_rest_stays_exactly_at_rest(rng, dim):
     problem, _ = free_object(rng, GRIDS[dim])
     trajectory = simulate(problem)
     assert (trajectory.x == problem.mesh.points).all()
-    assert (trajectory.v == 0).all() and (trajectory.a == problem.per_edge("a0")).all()
+    assert (trajectory.v == 0).all() and (trajectory.a == problem.per_edge(lambda m: m.a0)).all()

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from golden.physics.dampers import Linear
 from golden.physics.materials import Material, plastic, plastic_force, rheological, rheological_force, viscoelastic
 from golden.physics.model import Model, simulate
 from tests.golden_objects import line, phase, scene
 
-inf = math.inf
 FORCE = dict(f1=0.5, f2=2.0, c_max=30.0, c_min=1.0)
 L0, DEPTH = 1.0, 0.2
 
@@ -32,7 +32,7 @@ def test_force_and_ratio_satisfy_the_printed_equations(material, rng):
         length, a = rng.uniform(0.5, 1.5), rng.uniform(0.1, 0.9)
         ldot = rng.normal() * 10.0 ** rng.uniform(-3, 1)
         force, a_rate = (value[0] for value in model.edge_law(np.array([length]), ldot, np.array([a])))
-        c2 = material.c2(force)
+        c2 = material.damper.c2(force)
         voigt = k * (a * length - model.L[0])
         scale = abs(voigt) + (c1 + c2) * abs(ldot)  # of the terms that cancel in the equations
         # c2 at a force within one unit in the last place: 1 + B f2 < 8; and a dozen roundings
@@ -55,7 +55,8 @@ def press(material, press_time, hold_time, dt, release_time=0.0, mass=0.02):
 
 def voigt_strain(material, press_time, hold_time):
     """-(a l - L) after pressing at constant speed and holding: the solution of dq/dt = rho ldot - q / tau."""
-    q, tau = material.c_max / (material.c1 + material.c_max), (material.c1 + material.c_max) / material.k
+    c = material.damper.c_max
+    q, tau = c / (material.c1 + c), (material.c1 + c) / material.k
     pressed = DEPTH * q * tau / press_time * (1 - math.exp(-press_time / tau))
     return pressed * math.exp(-hold_time / tau)
 
@@ -142,7 +143,7 @@ def test_permanent_deformation_is_bounded_by_the_clamp(end):
 def test_a_free_end_on_a_damper_stops_like_an_exponential():
     """m dv/dt = -c v with c = c1 c2 / (c1 + c2), equation (6), from two dampers in series."""
     c1, c2, mass, dt, steps = 3.0, 6.0, 0.5, 1e-3, 500
-    material = Material("two", 0.0, c1, c2, c2, inf, inf, 0, 1, 0.5)
+    material = Material("two", 0.0, c1, Linear(c2), 0, 1, 0.5)
     model = Model(scene(line(), material, dt, [phase(line(), steps, [0])], mass=mass))
     model.v[1, 0] = 0.3
     for _ in range(steps):

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from sim_objects import MATERIALS
 
-from golden.physics.materials import solve_damper
 from golden.physics.switch import switched
 
 
 def force(m, length, rate, ratio, natural):
     """-f of the series law."""
     g = m.k * (ratio * length - natural) + m.c1 * rate
-    return solve_damper(m.c1, m.c_max, m.c_min, m.f1, m.f2, g)[1] * g
+    return m.rho_sigma(g)[0] * g
 
 
 def state(rng, m, count=200):

@@ -58,10 +58,13 @@ def test_positions_velocities_forces_and_ratios_come_back():
     )
     external = scene.phases[0].load + scene.mass[:, None] * scene.gravity
     np.testing.assert_allclose(loaded.forces(image.load), external, **half_a_bit(FMT.accumulator, units.force))
-    np.testing.assert_allclose(loaded.ratios(image.ratio), scene.per_edge("a0"), **half_a_bit(FMT.ratio, 1))
+    np.testing.assert_allclose(loaded.ratios(image.ratio), scene.per_edge(lambda m: m.a0), **half_a_bit(FMT.ratio, 1))
     np.testing.assert_allclose(
         loaded.ratios(image.length),
-        scene.per_edge("a0") * lengths(scene) / units.size * 2.0 ** (FMT.length.frac_bits - FMT.ratio.frac_bits),
+        scene.per_edge(lambda m: m.a0)
+        * lengths(scene)
+        / units.size
+        * 2.0 ** (FMT.length.frac_bits - FMT.ratio.frac_bits),
         rtol=2e-5,
     )
 
@@ -105,11 +108,11 @@ def test_material_coefficients_come_back():
 
         assert number("k") * full / units.size == pytest.approx(material.k, rel=MANTISSA)
         assert number("c") * full / units.velocity == pytest.approx(material.c1, rel=MANTISSA)
-        assert number("rho_low") == pytest.approx(1 / (1 + material.c1 / material.c_max), rel=MANTISSA)
-        assert number("rho_high") == pytest.approx(1 / (1 + material.c1 / material.c_min), rel=MANTISSA)
+        assert number("rho_low") == pytest.approx(1 / (1 + material.c1 / material.damper.c_max), rel=MANTISSA)
+        assert number("rho_high") == pytest.approx(1 / (1 + material.c1 / material.damper.c_min), rel=MANTISSA)
         creep = 2 * full / units.velocity * 2.0 ** record["creep_shift"]
-        assert number("sigma_low") == pytest.approx(creep / (material.c1 + material.c_max), rel=MANTISSA)
-        assert number("sigma_high") == pytest.approx(creep / (material.c1 + material.c_min), rel=MANTISSA)
+        assert number("sigma_low") == pytest.approx(creep / (material.c1 + material.damper.c_max), rel=MANTISSA)
+        assert number("sigma_high") == pytest.approx(creep / (material.c1 + material.damper.c_min), rel=MANTISSA)
         for name in ("a_min", "a_max"):
             assert record[name] * FMT.ratio.lsb == pytest.approx(getattr(material, name), abs=FMT.ratio.lsb)
 

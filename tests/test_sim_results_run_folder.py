@@ -35,7 +35,7 @@ def test_a_run_is_loaded_again_from_its_folder_alone(kept):
     scene, summary, trajectory = run_folder.load(folder)
     assert scene.path == folder / "scene.npz"
     assert (scene.name, scene.description, scene.dt) == (before.name, before.description, before.dt)
-    assert scene.materials == before.materials and scene.materials[0].c_max == inf
+    assert scene.materials == before.materials and scene.materials[0].damper.c_max == inf
     for name in ("points", "cells", "edges"):
         assert np.array_equal(getattr(scene.mesh, name), getattr(before.mesh, name)), name
     for name in ("edge_material", "mass", "gravity", "frames"):

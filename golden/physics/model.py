@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from golden.physics.materials import Material, solve_damper
+from golden.physics.materials import Material
 from golden.physics.scene import Phase, Scene
 from golden.physics.switch import switched
 from golden.physics.trajectory import Trajectory
@@ -29,19 +29,21 @@ class Model:
         self.component = (ends * scene.dim + np.arange(scene.dim)).ravel()  # where +f u, then -f u, are added
 
         self.x, self.v = scene.mesh.points.copy(), np.zeros_like(scene.mesh.points)
-        self.a = scene.per_edge("a0")
+        self.a = scene.per_edge(lambda m: m.a0)
         self.L = self.a * norm(self.x[self.j] - self.x[self.i])
         self.begin(scene.phases[0])
 
     def _consist(self, scene: Scene) -> None:
         """Take the materials of the scene."""
         self.scene = scene
-        self.k, self.c1 = scene.per_edge("k"), scene.per_edge("c1")
-        self.a_min, self.a_max = scene.per_edge("a_min"), scene.per_edge("a_max")
-        damper = [scene.per_edge(name) for name in ("c1", "c_max", "c_min", "f1", "f2")]
-        self.sigma, self.rho = solve_damper(*damper, g=0)
-        self.varying = np.flatnonzero(damper[1] != damper[2])  # edges whose damper depends on the force
-        self.damper = [parameter[self.varying] for parameter in damper]
+        self.k, self.c1 = scene.per_edge(lambda m: m.k), scene.per_edge(lambda m: m.c1)
+        self.a_min, self.a_max = scene.per_edge(lambda m: m.a_min), scene.per_edge(lambda m: m.a_max)
+        self.rho, self.sigma = scene.per_edge(lambda m: m.rho_sigma(0)[0]), scene.per_edge(lambda m: m.rho_sigma(0)[1])
+        self.varying = [  # (material, its edges) whose damper depends on the force
+            (material, np.flatnonzero(scene.edge_material == number))
+            for number, material in enumerate(scene.materials)
+            if material.damper.force_dependent
+        ]
 
     def become(self, materials: tuple[Material, ...]) -> None:
         """Consist of other materials from here on, one for each there was, without a jump in force:
@@ -71,9 +73,10 @@ class Model:
         """
         g = self.k * (a * length - self.L) + self.c1 * ldot
         sigma, rho = self.sigma, self.rho
-        if self.varying.size:
+        if self.varying:
             sigma, rho = sigma.copy(), rho.copy()
-            sigma[self.varying], rho[self.varying] = solve_damper(*self.damper, g[self.varying])
+        for material, edges in self.varying:
+            rho[edges], sigma[edges] = material.rho_sigma(g[edges])
         return -rho * g, ((1 - a) * ldot - sigma * g) / length
 
     def motion(self, x, v):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -72,14 +73,13 @@ class Scene:
     def force_dependent(self) -> bool:
         """Whether any edge has, at any time, a damper whose coefficient depends on the force."""
         used = np.unique(self.edge_material)
-        return any(not materials[m].linear for materials in self.material_sets for m in used)
+        return any(materials[m].damper.force_dependent for materials in self.material_sets for m in used)
 
     @property
     def material_sets(self) -> list[tuple[Material, ...]]:
         """The materials that the object begins with, then those that phases bring."""
         return [self.materials, *(phase.materials for phase in self.phases if phase.materials)]
 
-    def per_edge(self, parameter: str) -> np.ndarray:
-        """(E,) values of a `Material` parameter."""
-        values = np.array([getattr(material, parameter) for material in self.materials], dtype=float)
-        return values[self.edge_material]
+    def per_edge(self, parameter: Callable[[Material], float]) -> np.ndarray:
+        """Return the (E,) values of a parameter of the edges' materials, say ``lambda material: material.k``."""
+        return np.array([parameter(material) for material in self.materials], dtype=float)[self.edge_material]

@@ -29,7 +29,7 @@ import numpy as np
 from scipy.sparse import block_array, coo_array, csr_array, diags_array
 from scipy.sparse.linalg import eigs
 
-from golden.physics.materials import decay
+from golden.physics.dampers import series
 from golden.physics.scene import Scene
 from golden.support.errors import InputError
 
@@ -76,17 +76,11 @@ def _laws(scene: Scene):
     Held by a_min an edge is at its least stiff and its damping at its fastest; held by a_max it is slower
     than that or than with a free ratio. At a_min = 0 no ratio rests: the natural length L pushes it away.
     """
-    k, c1, c_max, c_min, f1, f2, a_min, a_max = (
-        scene.per_edge(name) for name in ("k", "c1", "c_max", "c_min", "f1", "f2", "a_min", "a_max")
-    )
-    soft = c_max.copy()
-    varying = c_max != c_min
-    # d|f| / d(rate) of the damper just below f2: it yields faster than c_min, its coefficient falls with |f|
-    b = decay(*(p[varying] for p in (c_max, c_min, f1, f2)))
-    soft[varying] = c_min[varying] / (1 + b * f2[varying])
+    k, c1 = scene.per_edge(lambda m: m.k), scene.per_edge(lambda m: m.c1)
+    a_min, a_max = scene.per_edge(lambda m: m.a_min), scene.per_edge(lambda m: m.a_max)
     laws = {}
-    for c2 in (c_max, soft):
-        sigma, rho = 1 / (c1 + c2), 1 / (1 + c1 / c2)
+    for c2 in (scene.per_edge(lambda m: m.damper.c_max), scene.per_edge(lambda m: m.damper.softest)):
+        rho, sigma = series(c1, c2)
         held = rho * c1, rho * k * np.where(a_min > 0, a_min, a_max), np.zeros_like(k)
         moves = a_min < a_max
         free = rho * c1, np.where(moves, rho**2 * k, held[1]), np.where(moves, k * sigma, 0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from golden.physics.materials import Material, solve_damper
+from golden.physics.materials import Material
 
 
 def switched(old: Material, new: Material, length, rate, ratio, natural) -> tuple[np.ndarray, np.ndarray]:
@@ -25,11 +25,10 @@ def switched(old: Material, new: Material, length, rate, ratio, natural) -> tupl
     """
     length, rate, ratio, natural = np.broadcast_arrays(length, rate, ratio, natural)
     g = old.k * (ratio * length - natural) + old.c1 * rate
-    _, rho = solve_damper(old.c1, old.c_max, old.c_min, old.f1, old.f2, g)
+    rho, _ = old.rho_sigma(g)
     pull = rho * g
     inside = (new.a_min < ratio) & (ratio < new.a_max)
     ratio = np.where(inside, ratio, new.a0)
     if not new.k:
         return ratio, ratio * length
-    trial = pull * (1 + new.c1 / new.c2(pull))
-    return ratio, ratio * length - (trial - new.c1 * rate) / new.k
+    return ratio, ratio * length - (new.trial_force(pull) - new.c1 * rate) / new.k

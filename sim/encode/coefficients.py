@@ -1,7 +1,7 @@
 """A material in the circuit's units: the fields of `golden.datapath.records.material` and its damper table."""
 
 from functools import partial
-from math import log2
+from math import inf, log2
 
 import numpy as np
 
@@ -21,23 +21,6 @@ def coefficient(x: float, formats: Formats) -> tuple[int, int]:
     return raw, -int(exponent)
 
 
-def middle_branch(material: Material, g: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(rho, sigma) of equation (7)'s middle branch, continued past both ends: bisection on f (1 + c1 / c2) = |g|."""
-    b = np.log(material.c_max / material.c_min) / (material.f2 - material.f1)
-
-    def c2(f):
-        return material.c_max * np.exp(-b * (f - material.f1))
-
-    low, high = np.zeros_like(g), g.copy()
-    with np.errstate(over="ignore", divide="ignore"):
-        for _ in range(100):
-            f = (low + high) / 2
-            above = f * (1 + material.c1 / c2(f)) > g
-            low, high = np.where(above, low, f), np.where(above, f, high)
-    total = material.c1 + c2(low)
-    return c2(low) / total, 1 / total
-
-
 def coefficients(
     material: Material, number: int, units: Units, formats: Formats, table: int
 ) -> tuple[dict[str, int], DamperTable | None]:
@@ -49,21 +32,16 @@ def coefficients(
         If the force-dependent branch is out of the range of the trial force's format.
     """
     full = units.trial[number]
-    ends = {}
-    for end, c2 in (("low", material.c_max), ("high", material.c_min)):
-        ends[end] = 1 / (1 + material.c1 / c2), 1 / (material.c1 + c2)
+    ends = {"low": material.rho_sigma(0.0), "high": material.rho_sigma(inf)}
     # |g| = 2 g 2^-g_shift full scales; the creep rate in velocity full scales
     creep = 2 * full / units.velocity
     creep_shift = coefficient(creep * ends["high"][1], formats)[1]
     largest = formats.threshold.raw_max * formats.threshold.lsb
-    g1, g2 = (
-        min(f * (1 + material.c1 / c) / full, largest)
-        for f, c in ((material.f1, material.c_max), (material.f2, material.c_min))
-    )
+    g1, g2 = (min(g / full, largest) for g in material.knees)
 
     words = None
     if g1 < largest:
-        branch = partial(middle_branch, material)
+        branch = partial(material.damper.middle_rho_sigma, material.c1)
         try:
             words = damper_table(
                 formats,

@@ -96,7 +96,8 @@ def longest(scene: Scene) -> float:
 
 def largest_share(material: Material) -> float:
     """The largest rho: the share of the trial force that an edge really carries."""
-    return 1 / (1 + material.c1 / material.c_max)
+    rho, _ = material.rho_sigma(0.0)
+    return float(rho)
 
 
 def full_scale(x: float) -> float:

@@ -46,5 +46,5 @@ def bounce_back(material: Material) -> float:
     """
     if material.k == 0:
         return 0.0
-    q, tau = 1 / (1 + material.c1 / material.c_max), (material.c1 + material.c_max) / material.k
-    return DEPTH * q * math.exp(-(HOLD + PRESS / 2) * DT / tau)
+    q, sigma = material.rho_sigma(0.0)  # tau = 1 / (sigma k)
+    return DEPTH * q * math.exp(-(HOLD + PRESS / 2) * DT * sigma * material.k)

@@ -54,8 +54,8 @@ def arrays(scene: Scene, dtype) -> Arrays:
     mesh, dim, edges, nodes = scene.mesh, scene.dim, len(scene.mesh.edges), len(scene.mesh.points)
     i, j = mesh.edges.T
     where = np.argsort(j, kind="stable")
-    k, c1, c2, a0 = (scene.per_edge(name) for name in ("k", "c1", "c_max", "a0"))
-    rho = 1 / (1 + c1 / c2)
+    k, c1, a0 = scene.per_edge(lambda m: m.k), scene.per_edge(lambda m: m.c1), scene.per_edge(lambda m: m.a0)
+    rho = scene.per_edge(lambda m: m.rho_sigma(0.0)[0])
     length = np.linalg.norm(mesh.points[j] - mesh.points[i], axis=1)
     edge = [
         a0,
@@ -64,9 +64,9 @@ def arrays(scene: Scene, dtype) -> Arrays:
         rho * k,
         rho * k * a0 * length,
         rho * c1,
-        1 / c2,
-        scene.per_edge("a_min"),
-        scene.per_edge("a_max"),
+        1 / scene.per_edge(lambda m: m.damper.c_max),
+        scene.per_edge(lambda m: m.a_min),
+        scene.per_edge(lambda m: m.a_max),
     ]
     node = np.concatenate([mesh.points.T, np.zeros((dim, nodes))])
     return Arrays(
