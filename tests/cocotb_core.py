@@ -1,4 +1,4 @@
-"""What `test_cocotb_core` runs in a simulator: the emitted circuit behind its host port, nothing but its ports."""
+"""Tests that `test_cocotb_core` runs in a simulator: the emitted circuit behind its host port, by its ports alone."""
 
 import cocotb
 import numpy as np

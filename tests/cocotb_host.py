@@ -1,4 +1,4 @@
-"""What the cocotb tests drive the emitted circuit with: its host port, and objects to load through it.
+"""The host side of the cocotb tests: the emitted circuit's host port, and objects to load through it.
 
 Inputs change and outputs are looked at on the falling edge; reading an X as a number is an error.
 """
@@ -91,7 +91,7 @@ class Host:
         counted = np.zeros(6, int)
         while int(self.dut.busy.value):
             sequencer = self.dut.sequencer
-            row = int(sequencer.row_goes.value)
+            row = int(sequencer.row__issue.value)
             edges = sum(self._issues(getattr(self.dut, f"lane{n}")) for n in range(PARAMETERS.lanes))
             waits = [int(getattr(sequencer, f"{why}_waits").value) for why in ("node", "list", "end")]
             counted += [1, row, edges, *waits]
@@ -100,9 +100,9 @@ class Host:
 
     @staticmethod
     def _issues(lane) -> int:
-        """Whether the lane issues a valid edge: the bit is the entry's last."""
-        valid = int(lane.row_front_entry.value) >> records.edge_entry().width - 1 & 1
-        return int(lane.row_front_goes.value) & valid
+        """Return 1 if the lane issues a valid edge: the bit is the entry's last."""
+        valid = int(lane.row_issue_entry.value) >> records.edge_entry().width - 1 & 1
+        return int(lane.row_issue_issue.value) & valid
 
     async def refused(self, requests):
         """All of them are refused, counted, and answer nothing."""

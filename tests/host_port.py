@@ -1,8 +1,10 @@
-"""A host port with memories behind it, for the tests of `hw.machine.host_port`."""
+"""A host port with memories, for the tests of `hw.machine.host_port`."""
 
 from hw_objects import simulate
 
-from hw.machine.host_port import CHOICE, LATENCY, MEMORY, HostPort, word_of
+from hw.machine.host_port import LATENCY, HostPort
+from hw.machine.interfaces import named
+from hw.machine.routes import CHOICE, MEMORY
 from hw.map.control import Control
 from hw.map.memory_map import Map, Region, join
 from hw.parameters import Parameters
@@ -15,7 +17,7 @@ MEMORIES = [region for region in Region if region != Region.CONTROL]
 
 
 def content(region, index, word, lane) -> int:
-    """What the memories behind the port hold."""
+    """Return the word that the port's memories hold."""
     return hash((int(region), index, word, lane)) % (1 << STATE)
 
 
@@ -24,7 +26,7 @@ def control(register, lane=0, word=0):
 
 
 class Port:
-    """A host port with memories behind it, one request at a time; remembers what reached them."""
+    """A host port with memories, for one request at a time; records what reaches them."""
 
     def __init__(self):
         self.dut = HostPort(MAP, FAULTS)
@@ -33,28 +35,32 @@ class Port:
 
     async def cycle(self, ctx):
         dut = self.dut
+        memories, words = dut.memories, named(dut.memories.words)
         for region in MEMORIES:
-            ctx.set(getattr(dut, word_of(region)), content(region, *self._asked[0]))
-        self._asked = [*self._asked[1:], tuple(ctx.get(port) for port in (dut.index, dut.word, dut.lane))]
-        if strobe := ctx.get(dut.strobe):
+            ctx.set(words[region.name.lower()], content(region, *self._asked[0]))
+        self._asked = [
+            *self._asked[1:],
+            tuple(ctx.get(port) for port in (memories.index, memories.word, memories.lane)),
+        ]
+        if strobe := ctx.get(memories.strobe):
             assert strobe.bit_count() == 1
         if strobe > 1 << Region.CONTROL:
-            self.strobes.append((Region(strobe.bit_length() - 1), *self._asked[-1], ctx.get(dut.data)))
+            self.strobes.append((Region(strobe.bit_length() - 1), *self._asked[-1], ctx.get(memories.data)))
         self.starts += ctx.get(dut.start)
         self.stops += ctx.get(dut.stop)
         await ctx.tick()
 
     async def request(self, ctx, write, address, data=0):
         """(refused, data)"""
-        dut = self.dut
-        for port, value in ((dut.write, write), (dut.address, address), (dut.write_data, data)):
+        bus = self.dut.bus
+        for port, value in ((bus.write, write), (bus.address, address), (bus.write_data, data)):
             ctx.set(port, value)
         for cycle in range(LATENCY):
-            assert not ctx.get(dut.answer)
-            ctx.set(dut.request, cycle == 0)
+            assert not ctx.get(bus.answer)
+            ctx.set(bus.request, cycle == 0)
             await self.cycle(ctx)
-        assert ctx.get(dut.answer)
-        answer = bool(ctx.get(dut.error)), ctx.get(dut.read_data)
+        assert ctx.get(bus.answer)
+        answer = bool(ctx.get(bus.error)), ctx.get(bus.read_data)
         await self.cycle(ctx)
         return answer
 
@@ -68,7 +74,7 @@ class Port:
         assert not refused
 
     async def state(self, ctx):
-        """All that a refused request must not change."""
+        """Return all that a refused request must not change."""
         registers = [Control.FAULTS, Control.ROW_COUNT, Control.NODE_COUNT, Control.VELOCITY_SHIFT]
         return [await self.read(ctx, r) for r in registers], list(self.strobes), self.starts, ctx.get(self.dut.steps)
 

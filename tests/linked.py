@@ -35,12 +35,8 @@ class Linked(wiring.Component):
         m = Module()
         m.submodules.core = core = Core(SMALL)
         m.submodules.device = device = Device(key=KEY, identity=IDENTITY, state=SMALL.formats.state)
-        for name in ("request", "write", "address", "write_data"):
-            m.d.comb += getattr(core, name).eq(getattr(device, f"port_{name}"))
-        for name in ("answer", "error", "read_data"):
-            m.d.comb += getattr(device, f"port_{name}").eq(getattr(core, name))
+        wiring.connect(m, device.port, core)
         m.d.comb += [
-            device.busy.eq(core.busy),
             device.valid.eq(self.valid),
             device.data.eq(self.data),
             self.out_valid.eq(device.out_valid),

@@ -12,8 +12,8 @@ from golden.datapath.rk4 import RK4
 from golden.physics import stability
 from golden.scene import capacity
 from golden.scene import load as scene
+from hw.emit.latencies import latencies
 from hw.machine.core import datapaths
-from hw.machine.latency import latencies
 from hw.parameters import Parameters
 from sim.results.comparison import BOUND, power
 from sim.results.cycles import cycles_per_step

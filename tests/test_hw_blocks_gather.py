@@ -1,4 +1,4 @@
-"""What the words of a group have between them, beside each of them."""
+"""The OR of a group of words is out beside each of them."""
 
 import functools
 import operator
@@ -11,7 +11,7 @@ WIDTH = 5
 
 
 def test_the_bits_of_a_group_come_beside_each_of_its_words(rng):
-    """Groups one behind the other and with anything between them."""
+    """Groups back to back, and with noise between them."""
     dut, expected, seen = Gather(width=WIDTH), {}, []
 
     async def bench(ctx):

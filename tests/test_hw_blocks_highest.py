@@ -1,4 +1,4 @@
-"""The highest of several numbers, of every cycle."""
+"""The highest of several numbers, in every cycle."""
 
 import pytest
 from hw_objects import simulate

@@ -38,7 +38,7 @@ def test_a_word_appears_after_the_latency_one_a_cycle(kind, latency, depth, rng)
 
 @pytest.mark.parametrize(("kind", "latency"), MEMORIES)
 def test_reads_and_writes_at_the_same_time(kind, latency, rng):
-    """A read finds what was written in earlier cycles; the word that is written in its own cycle is not asked for."""
+    """A read finds the words of earlier cycles; no word is read in the cycle in which it is written."""
     depth, cycles = 8, 400
     dut, words = kind(width=BITS, depth=depth), [0] * depth
     expected, seen = [], []
@@ -94,7 +94,7 @@ def test_a_queue_has_a_power_of_two_of_places(depth):
 
 @pytest.mark.parametrize(("puts", "takes"), [(0.9, 0.4), (0.4, 0.9), (1.0, 1.0)])
 def test_a_queue_keeps_the_order(puts, takes, rng):
-    """Beside a list; flushed now and then."""
+    """Compared with a list; flushed now and then."""
     dut, queue, flushes, fullest = Queue(width=16, depth=4), [], 0, 0
 
     async def bench(ctx):

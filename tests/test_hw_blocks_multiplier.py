@@ -1,4 +1,4 @@
-"""The multiplier: exact products of every kind of operands, in as many cycles as it says."""
+"""The multiplier: exact products of every kind of operands, after its latency."""
 
 from functools import partial
 
@@ -28,7 +28,7 @@ def operands(shapes, rng, count=300):
 
 
 def products(dut, a, b):
-    """Of one pair a cycle, read ``dut.registers`` cycles later."""
+    """Return the products of one pair a cycle, read ``dut.registers`` cycles later."""
     results = []
 
     async def bench(ctx):

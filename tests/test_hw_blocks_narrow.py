@@ -1,4 +1,4 @@
-"""The multiplier of lookup tables: exact products, in as many cycles as it says."""
+"""The multiplier of lookup tables: exact products, after its latency."""
 
 from functools import partial
 
@@ -25,7 +25,7 @@ def test_exhaustively_at_small_widths():
     assert made == [x * y for x, y in zip(a, b, strict=True)]
 
 
-def test_what_it_refuses():
+def test_wrong_operands_are_refused():
     make = partial(NarrowMultiplier, signed(18))
     refused(partial(make, signed(8), registers=3), "the narrow operand must be unsigned, not signed(8)")
     refused(partial(make, unsigned(9), registers=3), "registers must be at least 4, not 3")

@@ -9,9 +9,9 @@ import pytest
 from hw.docs.chart import rows_of
 from hw.docs.core import core, loop
 from hw.docs.lane import QUANTITIES, lane
+from hw.emit.latencies import latencies
 from hw.machine.core import datapaths
-from hw.machine.lane import FETCHED
-from hw.machine.latency import latencies
+from hw.machine.issued import FETCHED
 from hw.parameters import Parameters
 
 STAGE = "stage", "an edge to the next edge of the same node, at least"

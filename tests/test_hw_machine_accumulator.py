@@ -7,6 +7,7 @@ from hw_objects import simulate
 from golden.datapath.formats import Formats
 from golden.numbers.graph import AXES
 from hw.machine.accumulator import ANNOUNCED, READ, WRITTEN, Accumulator
+from hw.machine.interfaces import named
 
 FORMATS = Formats()
 NODES = 8
@@ -24,10 +25,10 @@ ORDERS = {
 
 
 def accumulate(dut, nodes, first, pulls, gaps, noise):
-    """Announce and give the forces, then read all sums: (NODES, 3). Wires carry noise when they mean nothing."""
+    """Announce and give the forces, then read all sums: (NODES, 3). Unused inputs carry noise."""
     starts = (np.cumsum(gaps) + np.arange(len(nodes))).tolist()
     announced = dict(zip(starts, range(len(nodes)), strict=True))
-    sums = []
+    sums, pull, total = [], named(dut.pull), named(dut.sums[0])
 
     async def bench(ctx):
         for cycle in range(starts[-1] + 1 + ANNOUNCED + WRITTEN):
@@ -37,13 +38,13 @@ def accumulate(dut, nodes, first, pulls, gaps, noise):
             ctx.set(dut.first, int(noise.integers(2) if item is None else first[item]))
             for axis, name in enumerate(AXES):
                 force = noise.integers(FORCE.raw_min, FORCE.raw_max) if arrived is None else pulls[arrived, axis]
-                ctx.set(getattr(dut, f"pull_{name}"), int(force))
+                ctx.set(pull[name], int(force))
             if cycle >= starts[-1] + ANNOUNCED + WRITTEN:
                 ctx.set(dut.valid, 0)
                 break
             await ctx.tick()
         for node in [*range(NODES), *[0] * READ]:
-            sums.append([ctx.get(getattr(dut, f"sum0_{axis}")) for axis in AXES])
+            sums.append([ctx.get(total[axis]) for axis in AXES])
             ctx.set(dut.sum_row, node)
             await ctx.tick()
 
@@ -77,7 +78,7 @@ def test_sums_are_exact(order, widest_gap, subtract, rng):
 
 @pytest.mark.parametrize("distance", range(1, 8))
 def test_a_sum_is_forwarded_over_every_distance(distance, rng):
-    """Node 0 again and again, so many cycles apart, others or nothing in between."""
+    """Forces on node 0, ``distance`` cycles apart, with others or nothing in between."""
     rounds = 12
     for between in (True, False):
         if between:
@@ -92,7 +93,7 @@ def test_a_sum_is_forwarded_over_every_distance(distance, rng):
         assert np.array_equal(sums[0], pulls[nodes == 0].sum(0))
 
 
-def test_a_sum_may_be_read_as_soon_as_it_says(rng):
+def test_a_sum_can_be_read_after_its_latency(rng):
     """`WRITTEN` cycles after its force, while forces on other nodes go on."""
     dut, seen = Accumulator(formats=FORMATS, nodes=NODES), []
     pulls = rng.integers(-1000, 1000, 40).tolist()
@@ -103,10 +104,10 @@ def test_a_sum_may_be_read_as_soon_as_it_says(rng):
             ctx.set(dut.first, 1)
             ctx.set(dut.node, cycle % NODES)
             if cycle >= ANNOUNCED:
-                ctx.set(dut.pull_x, pulls[cycle - ANNOUNCED])
+                ctx.set(dut.pull.x, pulls[cycle - ANNOUNCED])
             ctx.set(dut.sum_row, (cycle - ANNOUNCED - WRITTEN) % NODES)
             if cycle >= ANNOUNCED + READ + WRITTEN:
-                seen.append(ctx.get(dut.sum0_x))
+                seen.append(ctx.get(dut.sums[0].x))
             await ctx.tick()
 
     simulate(dut, bench)

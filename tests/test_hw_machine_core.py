@@ -24,7 +24,7 @@ class Host:
         self.core, self._map = core, Map(core.parameters)
 
     async def requests(self, ctx, requests):
-        """(error, data) of each of (write, address, data)."""
+        """Return (error, data) of each of (write, address, data)."""
         core, answers = self.core, []
         for request in [*requests, *[None] * LATENCY]:
             ctx.set(core.request, request is not None)
@@ -61,7 +61,7 @@ class Host:
         return (await self.read(ctx, [self.control(register) for register in registers])).tolist()
 
     async def assert_same(self, ctx, program, machine):
-        """Every bit of positions, velocities, forces, ratios and faults."""
+        """Compare every bit of positions, velocities, forces, ratios and faults."""
         addresses = [address for name in NODE_STATE + NODE_FORCE for address in program.node_addresses(name)]
         words = (await self.read(ctx, addresses)).reshape(9, -1).T
         expected = np.hstack([machine.x, machine.v, machine.force]) % (1 << self.core.parameters.formats.state)
@@ -82,7 +82,7 @@ def circuit(image, lanes, **kwargs):
 
 
 def loading(program):
-    """The words of the damper tables that are 0 are so from the start."""
+    """Return the writes of a program without the zeros of the damper tables, which are there from the start."""
     table = join(Region.TABLE, 0, 0, 0)
     return [(address, data) for address, data in program.load() if data or address < table]
 
@@ -92,7 +92,7 @@ def loading(program):
     [(1, 1, 3, [1, 2], [1]), (2, 1, 3, [1], [1]), (2, 2, 3, [1], [1]), (1, 1, 1, [1, 2], [1]), (2, 2, 1, [1], [1])],
 )
 def test_a_pressed_block(lanes, updates, axes, press, hold, rng):
-    """In runs of one step and of more; a new phase; counters; and the door is shut while it runs."""
+    """Runs of one step and of more, a new phase, the counters; requests are refused while it runs."""
     mesh = irregular((3, 2), rng)
     kinds = MATERIALS["rheological"], MATERIALS["plastic"]
     scene = pressed(mesh, kinds, 9, edge_material=rng.integers(2, size=len(mesh.edges)))

@@ -1,4 +1,4 @@
-"""The memory of a list: what the host writes is what the fetch and the host read, each so many cycles later."""
+"""The memory of a list: what the host writes is what the fetch and the host read, each in its cycle."""
 
 from hw_objects import simulate
 
@@ -10,23 +10,23 @@ def test_what_is_written_is_read_by_both(rng):
 
     async def bench(ctx):
         for place, word in enumerate(words):
-            ctx.set(dut.write, 1)
-            ctx.set(dut.write_address, place)
-            ctx.set(dut.write_data, word)
+            ctx.set(dut.host.write, 1)
+            ctx.set(dut.host.index, place)
+            ctx.set(dut.host.data, word)
             await ctx.tick()
-        ctx.set(dut.write, 0)
+        ctx.set(dut.host.write, 0)
         for host in (0, 1):
-            ctx.set(dut.host, host)
+            ctx.set(dut.host.active, host)
             asked = [int(place) for place in rng.integers(0, 20, 100)]
             for cycle in range(len(asked) + LATENCY):
                 if cycle < len(asked):
-                    mine, other = (dut.host_address, dut.fetch_address)[:: 1 if host else -1]
+                    mine, other = (dut.host.index, dut.address)[:: 1 if host else -1]
                     ctx.set(mine, asked[cycle])
                     ctx.set(other, int(rng.integers(20)))
                 await ctx.tick()
                 if cycle >= LATENCY - 1 and cycle - LATENCY + 1 < len(asked):
                     assert ctx.get(dut.entry) == words[asked[cycle - LATENCY + 1]]
                 if cycle >= LATENCY - 2 and cycle - LATENCY + 2 < len(asked):
-                    assert ctx.get(dut.data) == words[asked[cycle - LATENCY + 2]]
+                    assert ctx.get(dut.host.word) == words[asked[cycle - LATENCY + 2]]
 
     simulate(dut, bench)

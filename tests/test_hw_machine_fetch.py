@@ -2,6 +2,7 @@
 
 import pytest
 from amaranth.hdl import Module
+from amaranth.lib import wiring
 from hw_objects import simulate
 
 from hw.blocks.memory import READ_LATENCY
@@ -27,7 +28,8 @@ class Memory:
 
 
 def take_all(dut, count, cycles, wanted, data_latency=READ_LATENCY):
-    """(entries taken as (index, last, word), cycles in which there was none). ``wanted(cycle)``: one would be taken."""
+    """Return the entries taken as (index, last, word), and the cycles in which there was none. An entry is taken in a
+    cycle with ``wanted(cycle)``."""
     taken, missing, memory, expected = [], [], Memory(dut, data_latency), None
 
     async def bench(ctx):
@@ -40,14 +42,14 @@ def take_all(dut, count, cycles, wanted, data_latency=READ_LATENCY):
         ctx.set(dut.flush, 0)
         for cycle in range(cycles):
             memory.step(ctx)
-            valid, found = ctx.get(dut.valid), ctx.get(dut.word)
+            valid, found = ctx.get(dut.entry.valid), ctx.get(dut.entry.word)
             assert not valid or found == expected, "it is not what was announced"
             take = bool(valid and wanted(cycle))
             moves = take or not valid
-            ctx.set(dut.moves, moves)
-            expected = ctx.get(dut.next_word) if moves else found
+            ctx.set(dut.advances, moves)
+            expected = ctx.get(dut.second_word) if moves else found
             if take:
-                taken.append((ctx.get(dut.index), ctx.get(dut.last), ctx.get(dut.word)))
+                taken.append((ctx.get(dut.entry.index), ctx.get(dut.entry.last), ctx.get(dut.entry.word)))
             if not valid:
                 missing.append(cycle)
             await ctx.tick()
@@ -62,7 +64,7 @@ def entries(count, number):
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 8, 9, 1 << BITS])
 @pytest.mark.parametrize("data_latency", range(READ_LATENCY, 10))  # some of them fill the queue
-def test_one_a_cycle_once_it_is_under_way(count, data_latency):
+def test_an_entry_a_cycle_after_the_latency(count, data_latency):
     fetch = Fetch(index_bits=BITS, width=8, data_latency=data_latency)
     taken, missing = take_all(fetch, count, 200, lambda cycle: True, data_latency)
     assert missing == list(range(latency(data_latency)))
@@ -71,7 +73,7 @@ def test_one_a_cycle_once_it_is_under_way(count, data_latency):
 
 @pytest.mark.parametrize("count", [1, 3, 50])
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
-def test_however_it_is_taken(count, share, rng):
+def test_entries_taken_at_any_rate(count, share, rng):
     taken, missing = take_all(Fetch(index_bits=BITS, width=8), count, 600, lambda cycle: rng.random() < share)
     assert missing == list(range(latency(READ_LATENCY)))  # never short of entries again
     assert taken == entries(count, len(taken)) and len(taken) > 30
@@ -84,7 +86,7 @@ def test_bursts_after_a_long_wait():
 
 
 def test_a_flush_starts_over_with_another_count(rng):
-    """At any moment: nothing of the old list is left."""
+    """A flush at any moment leaves nothing of the old list."""
     dut, memory = Fetch(index_bits=BITS, width=8), None
 
     async def bench(ctx):
@@ -94,7 +96,7 @@ def test_a_flush_starts_over_with_another_count(rng):
             count, taken = int(rng.integers(1, 20)), []
             ctx.set(dut.count, count)
             ctx.set(dut.flush, 1)
-            ctx.set(dut.moves, 1)
+            ctx.set(dut.advances, 1)
             for _ in range(rng.integers(1, 4)):
                 memory.step(ctx)
                 await ctx.tick()
@@ -102,9 +104,9 @@ def test_a_flush_starts_over_with_another_count(rng):
             for _ in range(rng.integers(0, 30)):
                 memory.step(ctx)
                 moves = rng.random() < 0.7
-                ctx.set(dut.moves, moves)
-                if moves and ctx.get(dut.valid):
-                    taken.append((ctx.get(dut.index), ctx.get(dut.last), ctx.get(dut.word)))
+                ctx.set(dut.advances, moves)
+                if moves and ctx.get(dut.entry.valid):
+                    taken.append((ctx.get(dut.entry.index), ctx.get(dut.entry.last), ctx.get(dut.entry.word)))
                 await ctx.tick()
             assert taken == entries(count, len(taken))
 
@@ -112,12 +114,12 @@ def test_a_flush_starts_over_with_another_count(rng):
 
 
 @pytest.mark.parametrize("there", [0.3, 0.7, 1.0])
-def test_a_paced_fetch_moves_with_the_front_of_its_list(there, rng):
-    """The front, which stands elsewhere, gets every entry once and in order."""
-    m, fetch, front = Module(), PacedFetch(index_bits=BITS, width=8), IssueRegister(width=8)
-    m.submodules.fetch, m.submodules.front = fetch, front
-    m.d.comb += [front.flush.eq(fetch.flush), front.behind.eq(fetch.word), front.behind_valid.eq(fetch.valid)]
-    m.d.comb += [front.behind_ready.eq(fetch.behind_ready), front.ready.eq(fetch.ready)]
+def test_a_paced_fetch_advances_with_the_issue_register_of_its_list(there, rng):
+    """The issue register, which is elsewhere, gets every entry once and in order."""
+    m, fetch, issue = Module(), PacedFetch(index_bits=BITS, width=8), IssueRegister(width=8)
+    m.submodules.fetch, m.submodules.issue = fetch, issue
+    wiring.connect(m, fetch.advance, issue.advance)
+    m.d.comb += [issue.flush.eq(fetch.flush), issue.next.eq(fetch.entry.word)]
     count, taken = 9, []
 
     async def bench(ctx):
@@ -125,11 +127,11 @@ def test_a_paced_fetch_moves_with_the_front_of_its_list(there, rng):
         ctx.set(fetch.count, count)
         for cycle in range(400):
             ctx.set(fetch.flush, cycle < 2)
-            for ready in (fetch.behind_ready, fetch.ready):
+            for ready in (fetch.next_ready, fetch.ready):
                 ctx.set(ready, bool(rng.random() < there))
             memory.step(ctx)
-            if ctx.get(front.goes):
-                taken.append(ctx.get(front.entry))
+            if ctx.get(issue.issue):
+                taken.append(ctx.get(issue.entry))
             await ctx.tick()
 
     simulate(m, bench)

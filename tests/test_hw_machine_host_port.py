@@ -5,7 +5,9 @@ import pytest
 from host_port import FAULTS, MAP, MEMORIES, STATE, P, Port, content, control, use
 from hw_objects import simulate
 
-from hw.machine.host_port import ANYTIME, LATENCY
+from hw.machine.control_registers import ANYTIME
+from hw.machine.host_port import LATENCY
+from hw.machine.interfaces import named
 from hw.map.control import COUNTERS as NAMES
 from hw.map.control import MAGIC, REGISTERS, VERSION, Control
 from hw.map.memory_map import Region, join
@@ -51,7 +53,7 @@ REFUSED |= {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_refused_counted_and_nothing_changed(name):
+def test_a_bad_request_is_refused_and_counted_and_changes_nothing(name):
     async def scenario(ctx, port):
         before = await port.state(ctx)
         assert await port.request(ctx, *REFUSED[name]) == (True, 0)
@@ -70,7 +72,7 @@ BUSY |= {
 
 
 @pytest.mark.parametrize("name", BUSY)
-def test_refused_only_while_steps_are_run(name):
+def test_a_request_is_refused_only_while_steps_are_run(name):
     async def scenario(ctx, port):
         ctx.set(port.dut.busy, 1)
         before = await port.state(ctx)
@@ -87,21 +89,21 @@ def test_refused_only_while_steps_are_run(name):
 
 @pytest.mark.parametrize("name", [name for name in BUSY if name != "write RUN"])
 @pytest.mark.parametrize("later", [1, 2])
-def test_a_run_shuts_the_door_at_once(name, later):
-    """Requests right behind the one that starts a run come too late, though the machine is not busy yet."""
+def test_requests_are_refused_from_the_cycle_after_the_start(name, later):
+    """Requests that follow the start of a run at once are refused, though the machine is not busy yet."""
     write, address, data = BUSY[name]
 
     async def scenario(ctx, port):
         dut, errors, busy, before = port.dut, [], 0, await port.state(ctx)
         for cycle in range(later + LATENCY + 1):
-            ctx.set(dut.request, cycle in (0, later))
-            ctx.set(dut.write, 1 if cycle == 0 else write)
-            ctx.set(dut.address, control(Control.RUN) if cycle == 0 else address)
-            ctx.set(dut.write_data, 5 if cycle == 0 else data)
+            ctx.set(dut.bus.request, cycle in (0, later))
+            ctx.set(dut.bus.write, 1 if cycle == 0 else write)
+            ctx.set(dut.bus.address, control(Control.RUN) if cycle == 0 else address)
+            ctx.set(dut.bus.write_data, 5 if cycle == 0 else data)
             ctx.set(dut.busy, busy)
             busy = busy or ctx.get(dut.start)  # the sequencer's answer, a cycle later
-            if ctx.get(dut.answer):
-                errors.append(ctx.get(dut.error))
+            if ctx.get(dut.bus.answer):
+                errors.append(ctx.get(dut.bus.error))
             await port.cycle(ctx)
         assert errors == [0, 1] and port.starts == before[2] + 1 and ctx.get(dut.steps) == 5
         assert port.strobes == before[1]
@@ -146,10 +148,11 @@ def test_a_run_can_be_stopped_and_faults_and_refusals_cleared_while_it_goes_on()
     use(scenario)
 
 
-def test_registers_read_what_they_say():
+def test_registers_have_their_values():
     async def scenario(ctx, port):
+        counters = named(port.dut.counters) | {"steps_done": port.dut.steps_done}
         for name, value in COUNTERS.values():
-            ctx.set(getattr(port.dut, name), value)
+            ctx.set(counters[name], value)
         expected = FIXED | {register: value for register, (_, value) in COUNTERS.items()}
         expected |= {
             Control.ROW_COUNT: 7,
@@ -169,7 +172,7 @@ def test_registers_read_what_they_say():
 
 
 def test_writes_reach_their_memory_and_reads_come_back(rng):
-    """Anywhere in range, also at the ends."""
+    """At addresses anywhere in range, also at the ends."""
 
     async def scenario(ctx, port):
         for region in MEMORIES:
@@ -206,11 +209,13 @@ def test_a_request_a_cycle_answers_in_order(rng):
         dut, answers = port.dut, []
         for case, gap in [*zip(cases, gaps, strict=True), *[(None, 0)] * LATENCY, (None, 0)]:
             for left in reversed(range(gap + 1)):
-                if ctx.get(dut.answer):
-                    answers.append((bool(ctx.get(dut.error)), ctx.get(dut.read_data)))
-                ctx.set(dut.request, bool(case and not left))
+                if ctx.get(dut.bus.answer):
+                    answers.append((bool(ctx.get(dut.bus.error)), ctx.get(dut.bus.read_data)))
+                ctx.set(dut.bus.request, bool(case and not left))
                 if case:
-                    for signal, value in zip((dut.write, dut.address, dut.write_data), case[:3], strict=True):
+                    for signal, value in zip(
+                        (dut.bus.write, dut.bus.address, dut.bus.write_data), case[:3], strict=True
+                    ):
                         ctx.set(signal, value)
                 await port.cycle(ctx)
         assert answers == [case[3:] for case in cases]

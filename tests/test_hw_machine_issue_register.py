@@ -1,4 +1,4 @@
-"""The front of a list: entries in their order, each found ready, in front or behind it, before it may go."""
+"""The issue register: entries in their order, each found ready before it is issued, in the register or before it."""
 
 import pytest
 from hw_objects import simulate
@@ -11,27 +11,27 @@ def test_entries_go_in_order_and_only_when_ready(there, ready, rng):
     dut, taken, found, cycles = IssueRegister(width=8), [], set(), 400
 
     async def bench(ctx):
-        number = 0  # of the entry behind
+        number = 0  # of the entry that is fetched
         ctx.set(dut.flush, 1)
         await ctx.tick()
         ctx.set(dut.flush, 0)
         for _ in range(cycles):
-            valid, front = ctx.get(dut.valid), ctx.get(dut.entry)
-            behind, ready_behind, ready_front = (bool(rng.random() < share) for share in (there, ready, ready))
-            ctx.set(dut.behind, number % 256)
-            ctx.set(dut.behind_valid, behind)
-            ctx.set(dut.behind_ready, ready_behind)
-            ctx.set(dut.ready, ready_front)
-            take = bool(ctx.get(dut.goes))
+            valid, entry = ctx.get(dut.valid), ctx.get(dut.entry)
+            fetched, next_ready, entry_ready = (bool(rng.random() < share) for share in (there, ready, ready))
+            ctx.set(dut.next, number % 256)
+            ctx.set(dut.advance.next_valid, fetched)
+            ctx.set(dut.advance.next_ready, next_ready)
+            ctx.set(dut.advance.ready, entry_ready)
+            take = bool(ctx.get(dut.issue))
             assert take <= valid
             if take:
-                assert len(taken) in found and front == len(taken) % 256
-                taken.append(front)
-            elif valid and ready_front:
+                assert len(taken) in found and entry == len(taken) % 256
+                taken.append(entry)
+            elif valid and entry_ready:
                 found.add(len(taken))
-            assert ctx.get(dut.moves) == (take or not valid)
-            moved = behind and ctx.get(dut.moves)
-            if moved and ready_behind:
+            assert ctx.get(dut.advances) == (take or not valid)
+            moved = fetched and ctx.get(dut.advances)
+            if moved and next_ready:
                 found.add(number)
             number += moved
             await ctx.tick()
@@ -45,12 +45,12 @@ def test_a_flush_empties_it():
     dut = IssueRegister(width=8)
 
     async def bench(ctx):
-        ctx.set(dut.behind_valid, 1)
-        ctx.set(dut.behind_ready, 1)
+        ctx.set(dut.advance.next_valid, 1)
+        ctx.set(dut.advance.next_ready, 1)
         await ctx.tick()
-        assert ctx.get(dut.valid) and ctx.get(dut.goes)
+        assert ctx.get(dut.valid) and ctx.get(dut.issue)
         ctx.set(dut.flush, 1)
         await ctx.tick()
-        assert not ctx.get(dut.valid) and not ctx.get(dut.goes)
+        assert not ctx.get(dut.valid) and not ctx.get(dut.issue)
 
     simulate(dut, bench)

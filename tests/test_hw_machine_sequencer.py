@@ -9,8 +9,6 @@ from hw_objects import simulate
 from golden.datapath.rk4 import RK4
 from hw.machine.sequencer import Sequencer
 
-READY = "row_ready", "row_behind_ready", "node_ready", "node_behind_ready"
-
 
 @dataclass
 class Lists:
@@ -41,19 +39,17 @@ def random_lists(rng, nodes, rows, lanes, kind) -> Lists:
 
 
 class Run:
-    """A sequencer with lists in front of it and pipelines of given lengths behind it, watched in every cycle."""
+    """A sequencer between lists and pipelines of given lengths, watched in every cycle."""
 
-    def __init__(self, dut, lists: Lists, steps, latencies, ready, rng, stop=None, turns=1):
+    def __init__(self, dut, lists: Lists, steps, latencies, ready, rng, stop=None, cycles_per_node=1):
         self._stop = stop  # the cycle in which it is told to stop
-        self._turns, self._last_node = turns, -turns  # the cycle in which a node went
+        self._pace, self._last_node = cycles_per_node, -cycles_per_node  # the cycle in which a node went
         self.dut, self.lists, self.steps = dut, lists, steps
         self.row_latency, self.node_latency = latencies
         self._ready, self._rng = ready, rng
         self.rows_taken = self.nodes_taken = 0
-        self._standing, self._goes = (
-            [False, False],
-            [False, False],
-        )  # in front: a row, a node (`hw.machine.issue_register.IssueRegister`)
+        # A row, a node in its `hw.machine.issue_register.IssueRegister`
+        self._waiting, self._issues = [False, False], [False, False]
         self.rows_summed = self.nodes_updated = 0  # over all stages, before this cycle
         self.cycles = self.waits = 0
 
@@ -85,33 +81,34 @@ class Run:
         assert (self.rows_summed, self.nodes_updated) == (self.rows_taken, self.nodes_taken)
         for _ in range(3):  # it stays so
             assert ctx.get(dut.steps_done) == self.steps
-            assert not ctx.get(dut.busy) and not any(ctx.get(getattr(dut, name)) for name in READY)
+            ready = dut.row.ready, dut.row.next_ready, dut.node.ready, dut.node.next_ready
+            assert not ctx.get(dut.busy) and not any(map(ctx.get, ready))
             await ctx.tick()
 
     def _cycle(self, ctx, summed, updated):
         dut, lists = self.dut, self.lists
         row_stage, row = divmod(self.rows_taken, len(lists.rows))
         node_stage, node = divmod(self.nodes_taken, lists.nodes)
-        row_valid, node_valid = self._standing
-        behind = ((row + row_valid) % len(lists.rows), (node + node_valid) % lists.nodes)
+        row_valid, node_valid = self._waiting
+        following = ((row + row_valid) % len(lists.rows), (node + node_valid) % lists.nodes)
         (summed, sums_last), (updated, updates_last) = summed, updated
-        ctx.set(dut.row_summed_last, sums_last)
-        ctx.set(dut.node_updated_last, updates_last)
-        ctx.set(dut.row_valid, row_valid)
-        ctx.set(dut.row_goes, self._goes[0])
-        ctx.set(dut.row_last, row == len(lists.rows) - 1)
+        ctx.set(dut.rows_done, sums_last)
+        ctx.set(dut.nodes_done, updates_last)
+        ctx.set(dut.row.valid, row_valid)
+        ctx.set(dut.row.issue, self._issues[0])
+        ctx.set(dut.row.last, row == len(lists.rows) - 1)
         # As `hw.machine.completion_counter` counts them: in the stage that the updates, or the sums, are in
         in_stage = self.nodes_updated % lists.nodes
-        ctx.set(dut.row_nodes, all(n < in_stage for n in lists.rows[row]))
-        ctx.set(dut.row_behind_nodes, all(n < in_stage for n in lists.rows[behind[0]]))
-        ctx.set(dut.node_valid, node_valid)
-        ctx.set(dut.node_goes, self._goes[1])
-        ctx.set(dut.node_last, node == lists.nodes - 1)
+        ctx.set(dut.row.reached, all(n < in_stage for n in lists.rows[row]))
+        ctx.set(dut.row.next_reached, all(n < in_stage for n in lists.rows[following[0]]))
+        ctx.set(dut.node.valid, node_valid)
+        ctx.set(dut.node.issue, self._issues[1])
+        ctx.set(dut.node.last, node == lists.nodes - 1)
         in_stage = self.rows_summed % len(lists.rows)
-        ctx.set(dut.node_rows, lists.told[node] <= in_stage)
-        ctx.set(dut.node_behind_last, behind[1] == lists.nodes - 1)
-        ctx.set(dut.node_behind_rows, lists.told[behind[1]] <= in_stage)
-        row_take, node_take = self._goes
+        ctx.set(dut.node.reached, lists.told[node] <= in_stage)
+        ctx.set(dut.node.next_last, following[1] == lists.nodes - 1)
+        ctx.set(dut.node.next_reached, lists.told[following[1]] <= in_stage)
+        row_take, node_take = self._issues
         if row_take:
             assert row_stage < RK4.stages * self.steps
             assert ctx.get(dut.row_stage) == row_stage % RK4.stages
@@ -123,14 +120,14 @@ class Run:
             assert ctx.get(dut.node_stage) == node_stage % RK4.stages
             needed = len(lists.rows) * node_stage + lists.need[node]
             assert self.rows_summed >= needed, "a node went before its rows were summed"
-            assert self.cycles >= self._last_node + self._turns, "a node went before the one before had its turns"
+            assert self.cycles >= self._last_node + self._pace, "a node went before the one before had its cycles"
             self._last_node = self.cycles
-        for k, (name, take) in enumerate((("row", row_take), ("node", node_take))):
-            if take or not self._standing[k]:
-                self._standing[k] = bool(self._rng.random() < self._ready)
-                self._goes[k] = self._standing[k] and bool(ctx.get(getattr(dut, f"{name}_behind_ready")))
+        for k, (port, take) in enumerate(((dut.row, row_take), (dut.node, node_take))):
+            if take or not self._waiting[k]:
+                self._waiting[k] = bool(self._rng.random() < self._ready)
+                self._issues[k] = self._waiting[k] and bool(ctx.get(port.next_ready))
             else:
-                self._goes[k] |= bool(ctx.get(getattr(dut, f"{name}_ready")))
+                self._issues[k] |= bool(ctx.get(port.ready))
         waits = ctx.get(dut.node_waits)
         assert waits <= row_valid and not (waits and row_take)
         self.waits += waits
@@ -163,11 +160,11 @@ def test_random_lists(kind, ready, latencies, rng):
 
 @pytest.mark.parametrize("kind", ["sorted", "shuffled", "backwards", "empty"])
 @pytest.mark.parametrize("ready", [1.0, 0.6])
-def test_nodes_have_their_turns(kind, ready, rng):
+def test_nodes_have_their_cycles(kind, ready, rng):
     dut, runs = Sequencer(cycles_per_node=3), []
     for latencies in (1, 3), (12, 5), (3, 20):
         lists = random_lists(rng, int(rng.integers(2, 20)), int(rng.integers(1, 25)), int(rng.integers(1, 4)), kind)
-        runs.append(Run(dut, lists, int(rng.integers(1, 4)), latencies, ready, rng, turns=3))
+        runs.append(Run(dut, lists, int(rng.integers(1, 4)), latencies, ready, rng, cycles_per_node=3))
     watched(*runs)
 
 
@@ -189,13 +186,13 @@ def test_short_and_long_lists(nodes, rows, rng):
     watched(Run(Sequencer(), lists, 2, (5, 3), 1.0, rng))
 
 
-def test_a_node_that_asks_for_more_rows_than_there_are_goes_after_the_last(rng):
-    """A host's mistake makes it slow, not stuck."""
+def test_a_node_that_asks_for_more_rows_than_there_are_is_issued_after_the_last(rng):
+    """With a host's mistake the run is slow, but it ends."""
     rows = random_lists(rng, 8, 10, 1, "sorted").rows
     watched(Run(Sequencer(), Lists(rows, 8, told=[40] * 8), 2, (5, 3), 1.0, rng))
 
 
-def test_a_row_that_asks_for_a_node_beyond_the_list_goes_after_the_last(rng):
+def test_a_row_that_asks_for_a_node_beyond_the_list_is_issued_after_the_last(rng):
     rows = random_lists(rng, 8, 10, 1, "sorted").rows
     lists = Lists([row | {20} for row in rows], 8)
     watched(Run(Sequencer(), lists, 2, (5, 3), 1.0, rng))

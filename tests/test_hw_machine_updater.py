@@ -1,5 +1,5 @@
-"""The node updater gives the integers of `golden.datapath.node`, whole steps on random nodes, and shows them to the
-host."""
+"""The node updaters compute the integers of `golden.datapath.node`, whole steps on random nodes, and the host reads
+them."""
 
 from collections import Counter
 
@@ -17,8 +17,11 @@ from golden.numbers.qformat import BIT
 from hw.blocks.memory import READ_LATENCY
 from hw.machine.accumulator import READ
 from hw.machine.core import datapaths
-from hw.machine.host_port import HANDOVER
-from hw.machine.lane import NODE_WORDS
+from hw.machine.interfaces import named
+from hw.machine.node_copies import NODE_WORDS
+from hw.machine.node_pipeline import banks
+from hw.machine.routes import HANDOVER
+from hw.machine.serial_updater import SerialNodeUpdater
 from hw.machine.updater import NodeUpdater
 from hw.parameters import Parameters
 
@@ -66,17 +69,17 @@ class Bench:
         self.dut, self.nodes, self.rng, self.order, self.widest_gap = dut, nodes, rng, order, widest_gap
         self.faults = set()
 
-    def turn(self, ctx, axis: str):
+    def set_axis(self, ctx, axis: str):
         if self.dut.datapath.cycles_per_node > 1 and axis in AXES:
-            ctx.set(self.dut.host_axis, AXES.index(axis))
+            ctx.set(self.dut.host.axis, AXES.index(axis))
 
     async def write(self, ctx, strobe, bit, values):
-        ctx.set(self.dut.host, 1)
-        self.turn(ctx, AXES[bit % 3])
+        ctx.set(self.dut.host.active, 1)
+        self.set_axis(ctx, AXES[bit % 3])
         for index, value in enumerate(values):
             ctx.set(strobe, 1 << bit)
-            ctx.set(self.dut.host_index, index)
-            ctx.set(self.dut.host_data, int(value))
+            ctx.set(self.dut.host.index, index)
+            ctx.set(self.dut.host.data, int(value))
             await ctx.tick()
         ctx.set(strobe, 0)
         await ctx.tick().repeat(HANDOVER)
@@ -85,18 +88,18 @@ class Bench:
         dut, nodes = self.dut, self.nodes
         for bit, word in enumerate(NODE_WORDS):
             quantity, axis = word.split("_")
-            await self.write(ctx, dut.host_write_state, bit, nodes.vectors[f"{quantity}_base"][:, AXES.index(axis)])
+            await self.write(ctx, dut.host.write.state, bit, nodes.vectors[f"{quantity}_base"][:, AXES.index(axis)])
         for bit in range(3):
-            await self.write(ctx, dut.host_write_load, bit, nodes.load[:, bit])
+            await self.write(ctx, dut.host.write.load, bit, nodes.load[:, bit])
         mass = records.inverse_mass(nodes.fmt)
         packed = [mass.pack({name: nodes.mass[name][n] for name in mass}) for n in range(NODES)]
-        await self.write(ctx, dut.host_write_mass, 0, packed)
-        ctx.set(dut.host, 0)
+        await self.write(ctx, dut.host.write.mass, 0, packed)
+        ctx.set(dut.host.active, 0)
         await ctx.tick().repeat(HANDOVER)
         return packed
 
     async def stage(self, ctx, number):
-        """All nodes in the order, each checked when its new state comes out."""
+        """Issue all nodes in the order, and check each when its new state comes out."""
         dut, rng, fmt = self.dut, self.rng, self.nodes.fmt
         sums = random_raw(rng, fmt.accumulator, (self.nodes.banks, NODES, 3))
         mask = rng.integers(2, size=(NODES, self.nodes.banks))
@@ -105,7 +108,8 @@ class Bench:
         cycles = np.cumsum(gaps) + dut.datapath.cycles_per_node * np.arange(NODES)
         issued = dict(zip(cycles.tolist(), self.order.tolist(), strict=True))
         for bit, value in RK4.stage(number).items():
-            ctx.set(getattr(dut, f"stage_{bit}"), value)
+            ctx.set(named(dut.stage)[bit], value)
+        totals, update = banks(dut.sums), named(dut.update)
         for cycle in range(max(issued) + dut.datapath.latency + 2):
             node, summed, done = issued.get(cycle), issued.get(cycle - READ), issued.get(cycle - dut.datapath.latency)
             ctx.set(dut.valid, node is not None)
@@ -115,32 +119,33 @@ class Bench:
             if summed is not None:
                 for bank in range(self.nodes.banks):
                     for k, axis in enumerate(AXES):
-                        ctx.set(getattr(dut, f"sum{bank}_{axis}"), int(sums[bank, summed, k]))
-            assert ctx.get(dut.update) == (done is not None)
+                        ctx.set(totals[bank][axis], int(sums[bank, summed, k]))
+            assert ctx.get(dut.update.strobe) == (done is not None)
             if done is not None:
                 assert ctx.get(dut.update_row) == done
                 for word in NODE_WORDS:
                     expected = self.nodes.x if word[0] == "x" else self.nodes.vectors["v"]
-                    assert ctx.get(getattr(dut, f"update_{word}")) == expected[done, AXES.index(word[2])], word
+                    assert ctx.get(update[word]) == expected[done, AXES.index(word[2])], word
             bits = ctx.get(dut.fault)
             self.faults |= {name for bit, name in enumerate(dut.datapath.faults) if bits >> bit & 1}
             await ctx.tick()
 
-    async def read(self, ctx, port):
+    async def read(self, ctx, port, axis=""):
         seen = []
-        ctx.set(self.dut.host, 1)
-        self.turn(ctx, port.name[-1])
+        ctx.set(self.dut.host.active, 1)
+        self.set_axis(ctx, axis)
         for index in [*range(NODES), *[0] * (HANDOVER + READ_LATENCY)]:
             seen.append(ctx.get(port))
-            ctx.set(self.dut.host_index, index)
+            ctx.set(self.dut.host.index, index)
             await ctx.tick()
-        ctx.set(self.dut.host, 0)
+        ctx.set(self.dut.host.active, 0)
         await ctx.tick().repeat(HANDOVER)
         return seen[HANDOVER + READ_LATENCY :]
 
 
 def updater(parameters):
-    return NodeUpdater(parameters, datapaths(parameters)[1])
+    make = NodeUpdater if parameters.axes == 3 else SerialNodeUpdater
+    return make(parameters, datapaths(parameters)[1])
 
 
 @pytest.mark.parametrize(
@@ -156,10 +161,10 @@ def updater(parameters):
 def test_whole_steps(axes, lanes, order, widest_gap, rng):
     parameters = Parameters(lanes=lanes, nodes=NODES, edges=8, materials=2, tables=1, axes=axes)
     dut, nodes = updater(parameters), Nodes(parameters.formats, rng, 2 * lanes)
-    assert dut.banks == nodes.banks
+    assert dut.datapath.banks == nodes.banks
     orders = {"up": np.arange(NODES), "any": rng.permutation(NODES)}
     run = Bench(dut, nodes, rng, orders[order], widest_gap)
-    state = 1 << parameters.formats.state
+    state, words = 1 << parameters.formats.state, named(dut.host.words)
 
     async def bench(ctx):
         ctx.set(dut.velocity_shift, SHIFT)
@@ -168,14 +173,14 @@ def test_whole_steps(axes, lanes, order, widest_gap, rng):
             for stage in range(RK4.stages):
                 await run.stage(ctx, stage)
             for k, axis in enumerate(AXES):
-                for port, values in (
-                    (f"host_x_{axis}", nodes.x),
-                    (f"host_v_{axis}", nodes.vectors["v"]),
-                    (f"host_force_{axis}", nodes.force),
-                    (f"host_load_{axis}", nodes.load),
+                for word, values in (
+                    (f"state_x_{axis}", nodes.x),
+                    (f"state_v_{axis}", nodes.vectors["v"]),
+                    (f"force_{axis}", nodes.force),
+                    (f"load_{axis}", nodes.load),
                 ):
-                    assert await run.read(ctx, getattr(dut, port)) == (values[:, k] % state).tolist(), (step, port)
-            assert await run.read(ctx, dut.host_mass) == packed
+                    assert await run.read(ctx, words[word], axis) == (values[:, k] % state).tolist(), (step, word)
+            assert await run.read(ctx, dut.host.words.mass) == packed
 
     simulate(dut, bench)
     assert run.faults == set(nodes.faults) and len(run.faults) >= 3

@@ -18,6 +18,7 @@ from golden.numbers.graph import AXES, Graph, flatten
 from golden.numbers.qarray import QArray
 from golden.numbers.qformat import Q, unsigned
 from hw.machine.edge import EdgeDatapath, EdgeProcessor
+from hw.machine.interfaces import named
 from hw.pipeline.cost import Cost
 from hw.pipeline.pipe import FAULT_LATENCY
 from hw.pipeline.schedule import WIRES, Schedule
@@ -103,15 +104,16 @@ def traffic(dut: EdgeProcessor, values, damper, gaps, rng):
 
     async def bench(ctx):
         await load(ctx)
-        ctx.set(dut.velocity_shift, SHIFT)
+        inputs, results = named(dut.inputs), named(dut.outputs)
+        ctx.set(inputs["velocity_shift"], SHIFT)
         for cycle in range(starts[-1] + max(ready.values()) + FAULT_LATENCY + 1):
             ctx.set(dut.valid, cycle in item_at)
             for name, late in arrival.items():
                 item = item_at.get(cycle - late)
-                ctx.set(getattr(dut, name), noise[name][cycle % 64] if item is None else columns[name][item])
+                ctx.set(inputs[name], noise[name][cycle % 64] if item is None else columns[name][item])
             for name, late in ready.items():
                 if cycle - late in item_at:
-                    outputs[name].append(ctx.get(getattr(dut, name)))
+                    outputs[name].append(ctx.get(results[name]))
             if bits := ctx.get(dut.fault):
                 faults.update((cycle, name) for bit, name in enumerate(datapath.faults) if bits >> bit & 1)
             await ctx.tick()

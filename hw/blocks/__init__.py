@@ -1,1 +1,2 @@
-"""Hard blocks of an FPGA, one small module each, in plain Amaranth; `hw.families` has the same from primitives."""
+"""Small blocks of an FPGA in plain Amaranth, one module each; a family's own twins of them are in `hw.families`. They
+import nothing of hw."""

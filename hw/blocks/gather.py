@@ -1,4 +1,4 @@
-"""What the words of a group have between them, where they come one after the other."""
+"""The OR of a group of words that come one after the other."""
 
 from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
@@ -7,11 +7,11 @@ from amaranth.lib.wiring import In, Out
 from golden.numbers.graph import AXES
 
 GATHERED = len(AXES)
-"""Words of a group, and cycles from each of them to what all of them have."""
+"""Words of a group, and cycles from each of them to the OR of all."""
 
 
 class Gather(wiring.Component):
-    """The OR of `GATHERED` words that come in as many cycles, beside each of them `GATHERED` cycles later.
+    """The OR of `GATHERED` words that come in as many cycles. It is out for as many cycles, `GATHERED` after each word.
 
     Parameters
     ----------
@@ -31,10 +31,13 @@ class Gather(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        before, held = Signal.like(self.i, reset_less=True), Signal.like(self.i, reset_less=True)
-        all_, ago = Signal.like(self.i), Signal(GATHERED - 1, reset_less=True)  # since the first word
-        m.d.comb += [all_.eq(Mux(self.first, 0, before) | self.i), self.o.eq(held)]
-        m.d.sync += [before.eq(all_), ago.eq(Cat(self.first, ago))]
+        before = Signal.like(self.i, reset_less=True)
+        held = Signal.like(self.i, reset_less=True)
+        # since the first word
+        whole = Signal.like(self.i)
+        ago = Signal(GATHERED - 1, reset_less=True)
+        m.d.comb += [whole.eq(Mux(self.first, 0, before) | self.i), self.o.eq(held)]
+        m.d.sync += [before.eq(whole), ago.eq(Cat(self.first, ago))]
         with m.If(ago[-1]):
-            m.d.sync += held.eq(all_)
+            m.d.sync += held.eq(whole)
         return m

@@ -6,12 +6,12 @@ from amaranth.lib.wiring import In, Out
 
 
 def latency(count: int) -> int:
-    """Cycles: one for what is valid, one for each comparison in a row."""
+    """Return the cycles it takes: one to drop what is not valid, one for each level of comparisons."""
     return 1 + (count - 1).bit_length()
 
 
 class Highest(wiring.Component):
-    """The highest of those numbers that are valid; 0 if none is.
+    """The highest of the valid numbers, or 0.
 
     Latency `latency`. Throughput one result a cycle.
 

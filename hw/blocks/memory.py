@@ -5,7 +5,8 @@ from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
 READ_LATENCY = 2
-"""Cycles from a block RAM's address to its data: its own read and its output register."""
+"""Cycles from a block RAM's address to its data: its own read, then its output register, which is part of the block.
+Block RAMs and DSPs sit at fixed sites, so one more register on the route to or from them helps timing."""
 
 
 class _Ram(wiring.Component):
@@ -26,12 +27,17 @@ class _Ram(wiring.Component):
             }
         )
 
-    def _elaborate(self, domain: str, init):
-        """A module with the memory and a register behind it."""
+    def _elaborate(self, domain: str, registers: int, init=()) -> Module:
+        """Return a module with the memory and registers after it."""
         m = Module()
         m.submodules.words = words = memory.Memory(shape=len(self.data), depth=max(2, self.depth), init=init)
-        write, read = words.write_port(), words.read_port(domain=domain)
-        word = Signal(len(self.data), reset_less=True)
+        write = words.write_port()
+        read = words.read_port(domain=domain)
+        word = read.data
+        for number in range(registers):
+            register = Signal(len(self.data), name=f"word_{number}" if number else "word", reset_less=True)
+            m.d.sync += register.eq(word)
+            word = register
         m.d.comb += [
             write.en.eq(self.write),
             write.addr.eq(self.write_address),
@@ -39,7 +45,6 @@ class _Ram(wiring.Component):
             read.addr.eq(self.address),
             self.data.eq(word),
         ]
-        m.d.sync += word.eq(read.data)
         return m
 
 
@@ -49,8 +54,8 @@ class BlockRam(_Ram):
     A word appears `READ_LATENCY` cycles after its address, one a cycle. A word that is read in the cycle in which it
     is written is undefined on real devices (here it is the old one); a later read finds it.
 
-    Its contents, ``init``, are words to start with, or 0. A family that has block RAMs to offer makes its own module
-    of it (``get_block_ram`` of Amaranth's ``platform``).
+    Its contents, ``init``, are words to start with, or 0. A family makes its own module of it, if it has block RAMs
+    (``get_block_ram`` of Amaranth's ``platform``).
 
     Members
     -------
@@ -60,7 +65,7 @@ class BlockRam(_Ram):
     Raises
     ------
     ValueError
-        If the memory has no words or no bits.
+        If the memory has no words or no bits, or a family's block RAM has another latency than `READ_LATENCY`.
     """
 
     def __init__(self, *, width: int, depth: int, init=()):
@@ -69,15 +74,17 @@ class BlockRam(_Ram):
 
     def elaborate(self, platform):
         block = platform.get_block_ram(self) if hasattr(platform, "get_block_ram") else None
-        return block or self._elaborate("sync", self.init)
+        if block and READ_LATENCY != 2:
+            raise ValueError(f"the read latency of a family's block RAM must be 2 cycles, not {READ_LATENCY}")
+        return block or self._elaborate("sync", READ_LATENCY - 1, self.init)
 
 
 class LutRam(_Ram):
-    """A small memory of lookup tables, with the members and errors of a `BlockRam`: a word appears in the cycle after
+    """A small memory of lookup tables, with the members and errors of a `BlockRam`. A word appears in the cycle after
     its address."""
 
     def __init__(self, *, width: int, depth: int):
         super().__init__("lut_ram", width, depth)
 
     def elaborate(self, platform):
-        return self._elaborate("comb", ())
+        return self._elaborate("comb", 1)

@@ -11,12 +11,12 @@ WIDTH = 18
 class Multiplier(wiring.Component):
     """Exact product of two numbers, each signed or unsigned, of at most 18 bits on one multiplier.
 
-    Latency ``registers`` cycles (one at the inputs, the rest behind), throughput one product a cycle. A wider operand
-    is legal and takes more multipliers.
+    Latency ``registers`` cycles (one at the inputs, the rest after the product), throughput one product a cycle. A
+    wider operand is legal and takes more multipliers.
 
     Tools map a product of equal signedness to one block. A full-width unsigned operand ``u`` beside a signed one is
-    therefore taken as ``u - 2**17``, which is signed and 18 bits wide, and corrected by one addition. A family that
-    has a multiplier to offer makes its own module of it (``get_multiplier`` of Amaranth's ``platform``).
+    therefore taken as ``u - 2**17``, which is signed and 18 bits wide, and corrected by one addition. A family makes
+    its own module of it, if it has multipliers (``get_multiplier`` of Amaranth's ``platform``).
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Multiplier(wiring.Component):
     registers : int
         At least 2.
     apart : bool
-        Whether the last register, of three or more, may stand where the product is used instead of in the block.
+        The last register, of three or more, may be placed where the product is used instead of in the block.
 
     Members
     -------
@@ -78,5 +78,5 @@ class Multiplier(wiring.Component):
 
 
 def letter(shape: Shape) -> str:
-    """Of a kind's name: whether an operand is signed."""
+    """Return the letter for an operand in a kind's name: signed or unsigned."""
     return "s" if shape.signed else "u"

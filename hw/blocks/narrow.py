@@ -1,4 +1,4 @@
-"""A product with a number of few bits: a tree of sums, which needs no multiplier."""
+"""A product with a number of few bits: an adder tree, which needs no multiplier."""
 
 from amaranth.hdl import Module, Mux, Shape, Signal
 from amaranth.lib import wiring
@@ -8,15 +8,15 @@ from hw.blocks.multiplier import letter
 
 
 def levels(bits: int) -> int:
-    """Of sums of two, from one row for each bit."""
+    """Return the levels of two-operand sums for one row for each bit."""
     return (bits - 1).bit_length()
 
 
 class NarrowMultiplier(wiring.Component):
-    """Exact product of a number and a narrow unsigned one, of lookup tables.
+    """Exact product of a number and a narrow unsigned one, from lookup tables.
 
-    Latency ``registers`` cycles: one behind each level of sums, what is left behind the product. Throughput one product
-    a cycle.
+    Latency ``registers`` cycles: one after each level of sums, those left over after the product. Throughput one
+    product a cycle.
 
     Parameters
     ----------

@@ -1,17 +1,20 @@
-"""A short queue: lookup tables behind a register."""
+"""A short queue: a memory of lookup tables, and a register for the word that is next."""
 
 from amaranth.hdl import Module, Mux, Signal
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
+LATENCY = 1
+"""Cycles from a word that is put into an empty queue to the word at its end, which is a register."""
+
 
 class Queue(wiring.Component):
-    """First in, first out. A word appears in the cycle after it was put in, when those before it have been taken.
+    """First in, first out. A word appears in the cycle after it was put in, once those before it have been taken.
 
     Parameters
     ----------
     width, depth : int
-        Whoever puts words in sees to it that there are never more than ``depth``, a power of two.
+        There must never be more words in it than ``depth``, a power of two.
 
     Members
     -------
@@ -19,7 +22,7 @@ class Queue(wiring.Component):
         Empty it.
     put : In(1), data_in : In
     valid : Out(1), take : In(1), data : Out
-        There is a word, it is taken. ``take`` only while ``valid``.
+        There is a word; it is taken. ``take`` only while ``valid``.
 
     Raises
     ------
@@ -46,30 +49,35 @@ class Queue(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.words = words = memory.Memory(shape=len(self.data), depth=self.depth, init=())
-        write, read = words.write_port(), words.read_port(domain="comb")
-        places = [Signal(range(self.depth), name=name) for name in ("next_in", "next_out")]
-        # A word stands in front of the memory, in a register: the memory is never full, and what is written to its free
-        # place in cycles in which nothing is put in there is written over later. Whether words wait in it is known from
-        # a register too: all of the word in front hangs on it
-        moves, waiting, passes = Signal(), Signal(), Signal()
-        store, fetch, single = Signal(), Signal(), Signal()
+        write = words.write_port()
+        read = words.read_port(domain="comb")
+        addresses = [Signal(range(self.depth), name=name) for name in ("next_in", "next_out")]
+        # The next word is in a register, so the memory is never full, and in every cycle the put word is written to its
+        # free address: without a put it is written over later. That words wait in it is in a register too, because its
+        # fan-out is the whole next word
+        advances = Signal()
+        waiting = Signal()
+        passes = Signal()
+        store = Signal()
+        fetch = Signal()
+        single = Signal()
         m.d.comb += [
-            moves.eq(~self.valid | self.take),
-            single.eq(places[0] == (places[1] + 1)[: len(places[1])]),
-            passes.eq(moves & ~waiting),
+            advances.eq(~self.valid | self.take),
+            single.eq(addresses[0] == (addresses[1] + 1)[: len(addresses[1])]),
+            passes.eq(advances & ~waiting),
             store.eq(self.put & ~passes),
-            fetch.eq(moves & waiting),
+            fetch.eq(advances & waiting),
             write.en.eq(1),
             write.data.eq(self.data_in),
         ]
-        with m.If(moves):
+        with m.If(advances):
             m.d.sync += [self.data.eq(Mux(waiting, read.data, self.data_in)), self.valid.eq(waiting | self.put)]
         m.d.sync += waiting.eq(store | waiting & ~(fetch & single))
-        for port, place, steps in ((write, places[0], store), (read, places[1], fetch)):
-            m.d.comb += port.addr.eq(place)
-            m.d.sync += place.eq(place + steps)
+        for port, address, steps in ((write, addresses[0], store), (read, addresses[1], fetch)):
+            m.d.comb += port.addr.eq(address)
+            m.d.sync += address.eq(address + steps)
             with m.If(self.flush):
-                m.d.sync += place.eq(0)
+                m.d.sync += address.eq(0)
         with m.If(self.flush):
             m.d.sync += [self.valid.eq(0), waiting.eq(0)]
         return m

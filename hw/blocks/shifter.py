@@ -8,14 +8,14 @@ from amaranth.lib.wiring import In, Out
 class ShiftStage(wiring.Component):
     """A number shifted by 0 or 1, or by 0 to 3 times some places; combinational.
 
-    Bits that leave are lost. To the left zeros enter, to the right copies of the sign.
+    Bits that are shifted out are lost. A shift to the left fills with zeros, one to the right with copies of the sign.
 
     Parameters
     ----------
     shape : Shape
         Of the number.
     bits : int
-        Of how many times, 1 or 2.
+        Bits of ``times``, 1 or 2.
     places : int
     left : bool
 
@@ -32,7 +32,7 @@ class ShiftStage(wiring.Component):
         super().__init__({"i": In(shape), "times": In(bits), "o": Out(unsigned(shape.width))})
 
     def source(self, bit: int, times: int) -> Value | None:
-        """Where an output bit comes from; None for a zero."""
+        """Return the input bit that becomes an output bit; None for a zero."""
         place = bit - times * self.places if self.left else bit + times * self.places
         if 0 <= place < len(self.i):
             return self.i[place]
@@ -50,6 +50,6 @@ class ShiftStage(wiring.Component):
             sources = [self.source(n, times) for n in range(len(self.i))]
             moved.append(Cat(zero if bit is None else bit for bit in sources))
         for bit in self.times:
-            moved = [Mux(bit, far, near) for near, far in zip(moved[::2], moved[1::2], strict=True)]
+            moved = [Mux(bit, further, unmoved) for unmoved, further in zip(moved[::2], moved[1::2], strict=True)]
         m.d.comb += self.o.eq(moved[0])
         return m

@@ -6,14 +6,15 @@ from amaranth.lib.cdc import FFSynchronizer
 from amaranth.lib.wiring import In, Out
 
 from golden.support.errors import InputError
+from hw.blocks.placed import Placed
 from hw.boards.board import Board
 from hw.boards.pins import check
-from hw.emit.verilog import Placed, convert, emit
-from hw.families import FAMILIES
+from hw.emit.linked import LINKED, emit_link
+from hw.emit.verilog import convert, emit
 from hw.families import no_pll as none
 from hw.families.ecp5 import pll as ecp5
 from hw.families.xilinx import pll as xilinx
-from hw.link.top import LINKED, Linked
+from hw.link.top import Linked
 from hw.parameters import Parameters
 
 BOARD, CLOCK = "rheogate_board", "rheogate_clock"
@@ -41,7 +42,8 @@ class HeldReset(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        asked, left = Signal(init=1), Signal(range(HELD), init=HELD - 1, reset_less=True)
+        asked = Signal(init=1)
+        left = Signal(range(HELD), init=HELD - 1, reset_less=True)
         held = Signal(init=1, reset_less=True)
         m.submodules.asked = FFSynchronizer(self.cause, asked, init=1)
         with m.If(asked):
@@ -75,7 +77,8 @@ class BoardTop(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.domains.sync = ClockDomain()
-        clock, locked = Signal(name="system_clock"), Signal(name="pll_locked")
+        clock = Signal(name="system_clock")
+        locked = Signal(name="pll_locked")
         m.submodules.clock = Instance(CLOCK, i_oscillator=self.clk, o_clock=clock, o_locked=locked)
         m.submodules.held = held = HeldReset()
         button = self._active("reset", self.reset) if "reset" in self._pins else 0
@@ -105,7 +108,6 @@ def board_top(board: Board, parameters: Parameters) -> tuple[str, float]:
         linked = Linked(core, clock_hz=round(mhz * 1e6), baud=board.baud)
     except ValueError as error:
         raise InputError(str(error)) from None
-    platform = FAMILIES[parameters.family]
     top = convert(BoardTop(board, linked), BOARD)
     check(board.ports, top, BOARD)
-    return "\n".join([text, convert(linked, LINKED, platform), clock, top]), mhz
+    return "\n".join([text, emit_link(linked, parameters.family), clock, top]), mhz

@@ -1,11 +1,13 @@
 """The picture of the core: the loop from an edge's issue to the next edge of the same node, with its cycles."""
 
 from hw.docs import svg
+from hw.emit.latencies import latencies
 from hw.machine.accumulator import WRITTEN
 from hw.machine.core import datapaths
-from hw.machine.lane import COPIED, FETCHED
-from hw.machine.latency import Latencies, latencies
-from hw.machine.updater import GATHERED
+from hw.machine.issued import FETCHED
+from hw.machine.latency import Latencies
+from hw.machine.node_datapath import GATHERED
+from hw.machine.routes import COPIED
 from hw.parameters import Parameters
 
 LANE, NODE, HOST = ("#eaf2fb", "#0969da"), ("#fff6dd", "#bf8700"), ("#f6f8fa", "#57606a")

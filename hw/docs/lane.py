@@ -3,7 +3,9 @@
 from hw.blocks.memory import READ_LATENCY
 from hw.docs.chart import Row, chart, rows_of
 from hw.machine.core import datapaths
-from hw.machine.lane import FETCHED, NEXT, latency, written
+from hw.machine.edge_memories import NEXT
+from hw.machine.issued import FETCHED
+from hw.machine.lane import latency, written
 from hw.parameters import Parameters
 
 QUANTITIES = [

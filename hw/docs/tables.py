@@ -5,7 +5,7 @@ from hw.boards.bitstream import command as bitstream
 from hw.boards.bitstream import result as build
 from hw.boards.timing import result as timing
 from hw.docs.boards import board_list
-from hw.machine.latency import latencies
+from hw.emit.latencies import latencies
 from hw.map.control import REGISTERS
 from hw.map.memory_map import Map, Region
 from hw.parameters import Parameters

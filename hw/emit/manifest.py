@@ -5,9 +5,9 @@ import hashlib
 from amaranth.hdl import Shape
 from amaranth.lib.wiring import In
 
+from hw.emit.latencies import latencies
 from hw.link.description import description, dump
 from hw.machine.core import Core
-from hw.machine.latency import latencies
 from hw.parameters import Parameters
 from hw.sizes import sizes_of, words_of
 

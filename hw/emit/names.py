@@ -1,4 +1,4 @@
-"""Verilog as Yosys writes it, made readable: plain names, nothing that nobody reads, no riddles for a linter."""
+"""Make the Verilog that Yosys writes readable: plain names, no unused wires, nothing a linter would ask about."""
 
 import re
 import textwrap
@@ -16,7 +16,7 @@ CASE = re.compile(r"^( *)casez (?:.*\n)*?\1endcase$", re.MULTILINE)
 
 
 def readable(verilog: str) -> str:
-    """The same modules. A register's next value is called after it, any other intermediate result ``t<number>``."""
+    """Return the same modules. A register's next value is named after it, other intermediate results ``t<number>``."""
     return re.sub(r"^module (?:.*\n)*?endmodule$", lambda module: _module(module[0]), verilog, flags=re.MULTILINE)
 
 
@@ -24,7 +24,7 @@ def _module(text: str) -> str:
     text = HEADER.sub(_clock_first, _left_open(_without_aliases(_renamed(text))))
     text = REPEATED.sub(lambda bits: f"{{{bits[2].count(',') + 1}{{{bits[1]}}}}}", text)  # a sign that is extended
     text = re.sub(rf"= ! ({NAME})", r"= ~| \1", text)  # of several bits
-    # In SystemVerilog what a declaration sets is there before any process looks: no event
+    # In SystemVerilog a declaration sets its value before any process runs: that is no event
     text = text.replace("  reg initial_event = 0;\n", "  reg initial_event;\n  initial initial_event = 0;\n")
     return CASE.sub(_with_default, text)
 
@@ -43,7 +43,7 @@ def _renamed(text: str) -> str:
 
 
 def _plain(name: str) -> str:
-    """A legal name for one that may be escaped."""
+    """Return a legal name for one that may be escaped."""
     if re.fullmatch(r"\\\$\d+", name):
         return f"t{name[2:]}"
     if name.startswith("\\$auto$verilog_backend"):
@@ -53,7 +53,7 @@ def _plain(name: str) -> str:
 
 
 def _without_aliases(text: str) -> str:
-    """Wires that are assigned and never read are second names of others, or what an operation leaves unused."""
+    """Drop wires that are assigned and never read: second names of others, or unused parts of a result."""
     while True:
         uses = Counter(re.findall(rf"(?<![.\w]){NAME}", text))
         assigned = re.findall(rf"^  assign ({NAME}) = ", text, re.MULTILINE)
@@ -64,7 +64,7 @@ def _without_aliases(text: str) -> str:
 
 
 def _left_open(text: str) -> str:
-    """An instance's output that goes nowhere is connected to nothing."""
+    """Leave an instance's output open if its wire goes nowhere."""
     uses = Counter(re.findall(rf"(?<![.\w]){NAME}", text))
     idle = {name for _, name in CONNECTION.findall(text) if uses[name] == 2}  # declaration and connection
     text = WIRE.sub(lambda wire: "" if wire[1] in idle else wire[0], text)

@@ -44,8 +44,13 @@ class FrameCrc(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.crc = crc = CRC(data_width=8).create()
-        first, begins, byte, waits = Signal(init=1), Signal(), Signal(8), Signal()
-        keyed, number = Signal(), Signal(range(KEY_BYTES))  # the key goes before the byte that waits
+        first = Signal(init=1)
+        begins = Signal()
+        byte = Signal(8)
+        waits = Signal()
+        # the key goes before the byte that waits
+        keyed = Signal()
+        number = Signal(range(KEY_BYTES))
         m.d.comb += [
             self.ready.eq(~waits),
             crc.start.eq(waits & begins),

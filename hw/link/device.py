@@ -1,6 +1,6 @@
 """Commands that came, done one after the other on the host port, and their answers."""
 
-from amaranth.hdl import Array, Const, Module, Mux, Signal
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -12,9 +12,23 @@ from hw.link.receive import EVENTS, FrameReceiver
 from hw.link.registers import LINK, LinkRegisters
 from hw.link.send import FrameSender
 from hw.link.walk import Walker
-from hw.machine.host_port import host_signature
+from hw.machine.interfaces import HostBus
 from hw.map.control import Control
 from hw.map.memory_map import ADDRESS, Region, join
+
+
+def members(state: int) -> dict:
+    """Return the ports of a device, for words of ``state`` bits."""
+    return {
+        "valid": In(1),
+        "data": In(8),
+        "error": In(1),
+        "broken": In(1),
+        "out_valid": Out(1),
+        "out_data": Out(8),
+        "out_ready": In(1),
+        "port": Out(HostBus(state)),
+    }
 
 
 class Device(wiring.Component):
@@ -38,27 +52,12 @@ class Device(wiring.Component):
         From a `hw.link.uart.Receiver`.
     out_valid, out_data, out_ready
         To a `hw.link.uart.Transmitter`.
-    port_...: request, write, address, write_data : Out; answer, error, read_data : In
-        To the host port: `hw.machine.host_port`.
-    busy : In(1)
+    port : Out(HostBus)
     """
 
     def __init__(self, *, key: bytes, identity: list[int], state: int):
         self._key, self._identity, self._state = key, identity, state
-        port = {f"port_{name}": member.flip() for name, member in host_signature(state).items()}
-        super().__init__(
-            {
-                "valid": In(1),
-                "data": In(8),
-                "error": In(1),
-                "broken": In(1),
-                "out_valid": Out(1),
-                "out_data": Out(8),
-                "out_ready": In(1),
-                "busy": In(1),
-                **port,
-            }
-        )
+        super().__init__(members(state))
 
     def elaborate(self, platform):
         m = Module()
@@ -68,7 +67,9 @@ class Device(wiring.Component):
         m.submodules.walker = self._walker = walker = Walker(self._state)
         m.submodules.pauser = self._pauser = pauser = Pause(self._state)
         m.submodules.registers = self._registers = registers = LinkRegisters(self._state)
-        self._greets, self._exchanges, self._accesses = Signal(), Signal(), Signal()
+        self._greets = Signal(name="greets")
+        self._exchanges = Signal(name="exchanges")
+        self._accesses = Signal(name="accesses")
         m.d.sync += [
             self._greets.eq(receiver.type == Operation.HELLO),
             self._exchanges.eq(receiver.type == Operation.EXCHANGE),
@@ -88,8 +89,8 @@ class Device(wiring.Component):
             walker.item_ready.eq(emitter.ready),
             pauser.noted.eq(walker.noted),
             pauser.steps.eq(walker.steps),
-            pauser.busy.eq(self.busy),
-            registers.busy.eq(self.busy),
+            pauser.busy.eq(self.port.busy),
+            registers.busy.eq(self.port.busy),
             *(getattr(registers, event).eq(getattr(receiver, event)) for event in EVENTS),
         ]
         self._faults = Signal()  # they are asked for
@@ -101,27 +102,23 @@ class Device(wiring.Component):
         """Who of them uses the host port does so alone; the link's own registers answer beside it. Registers on both
         ways: the circuit is large, and may be far away."""
         walker, pauser, registers = self._walker, self._pauser, self._registers
-        own = ADDRESS.field("region", walker.port_address) == LINK
+        own = ADDRESS.field("region", walker.port.address) == LINK
         m.d.comb += [
-            registers.request.eq(walker.port_request & own),
-            registers.write.eq(walker.port_write),
-            registers.index.eq(ADDRESS.field("index", walker.port_address)),
-            registers.data.eq(walker.port_write_data),
+            registers.request.eq(walker.port.request & own),
+            registers.write.eq(walker.port.write),
+            registers.index.eq(ADDRESS.field("index", walker.port.address)),
+            registers.data.eq(walker.port.write_data),
         ]
-        m.d.sync += self.port_request.eq(pauser.port_request | self._faults | walker.port_request & ~own)
-        with m.If(pauser.port_request):
-            for name in ("write", "address", "write_data"):
-                m.d.sync += getattr(self, f"port_{name}").eq(getattr(pauser, f"port_{name}"))
+        m.d.sync += self.port.request.eq(pauser.port.request | self._faults | walker.port.request & ~own)
+        with m.If(pauser.port.request):
+            m.d.sync += _request(self.port).eq(_request(pauser.port))
         with m.Elif(self._faults):
-            m.d.sync += [self.port_write.eq(0), self.port_address.eq(join(Region.CONTROL, 0, Control.FAULTS, 0))]
+            m.d.sync += [self.port.write.eq(0), self.port.address.eq(join(Region.CONTROL, 0, Control.FAULTS, 0))]
         with m.Else():
-            for name in ("write", "address", "write_data"):
-                m.d.sync += getattr(self, f"port_{name}").eq(getattr(walker, f"port_{name}"))
-        for name in ("answer", "error", "read_data"):
-            theirs = getattr(self, f"port_{name}")
-            given = Signal.like(theirs, name=f"given_{name}")
-            m.d.sync += given.eq(Mux(registers.answer, getattr(registers, name), theirs))
-            m.d.comb += [getattr(user, f"port_{name}").eq(given) for user in (pauser, walker)]
+            m.d.sync += _request(self.port).eq(_request(walker.port))
+        given = Signal(len(_answer(self.port)), name="given_answer")
+        m.d.sync += given.eq(Mux(registers.answer, _answer(registers), _answer(self.port)))
+        m.d.comb += [_answer(pauser.port).eq(given), _answer(walker.port).eq(given)]
 
     def _commands(self, m):
         with m.FSM():
@@ -136,8 +133,13 @@ class Device(wiring.Component):
     def _choice(self, m):
         """What becomes of a command, by its seq."""
         receiver, sender, registers, greets = self._receiver, self._sender, self._registers, self._greets
-        self._session, self._expected, self._status = Signal(), Signal(8), Signal(Status)
-        early, due, done, free = Signal(8), Signal(), Signal(), Signal()
+        self._session = Signal(name="session")
+        self._expected = Signal(8, name="expected")
+        self._status = Signal(Status, name="status")
+        early = Signal(8)
+        due = Signal()
+        done = Signal()
+        free = Signal()
         m.d.comb += early.eq(receiver.seq - self._expected)
         m.d.sync += [
             due.eq(greets | ~self._session | (early == 0)),
@@ -183,7 +185,7 @@ class Device(wiring.Component):
                     m.next = "walk"
                     with m.If(self._greets):
                         m.d.sync += [self._session.eq(1), self._expected.eq(receiver.seq)]
-                    with m.If(self._exchanges & self.busy):
+                    with m.If(self._exchanges & self.port.busy):
                         m.next = "pause"
         with m.State("pause"):
             m.d.comb += pauser.pause.eq(1)
@@ -213,10 +215,16 @@ class Device(wiring.Component):
     def _answering(self, m):
         """Identity, faults and header; what was read stands in the answer already."""
         receiver, sender, emitter, walker = self._receiver, self._sender, self._emitter, self._walker
-        told, faults, length = Signal(range(len(self._identity) + 1)), Signal(self._state), Signal.like(sender.length)
-        gives, heads, number, header = Signal(), Signal(), Signal(range(HEADER.size)), Signal(8)
-        item, identity = Signal.like(emitter.item), Array(Const(part, len(emitter.item)) for part in self._identity)
-        payload, status = length - HEADER.size, self._status | Mux(self.busy, BUSY, 0)
+        told = Signal(range(len(self._identity) + 1))
+        faults = Signal(self._state)
+        length = Signal.like(sender.length)
+        gives = Signal()
+        heads = Signal()
+        number = Signal(range(HEADER.size))
+        header = Signal(8)
+        item = Signal.like(emitter.item)
+        identity = Array(Const(part, len(emitter.item)) for part in self._identity)
+        payload, status = length - HEADER.size, self._status | Mux(self.port.busy, BUSY, 0)
         m.d.comb += [
             item.eq(faults),
             emitter.valid.eq(walker.item_valid | gives),
@@ -239,8 +247,8 @@ class Device(wiring.Component):
                 m.next = "faulty"
         with m.State("faulty"):
             m.d.comb += emitter.at.eq(HEADER.size)
-            with m.If(walker.port_answer):
-                m.d.sync += [faults.eq(walker.port_read_data), length.eq(emitter.place), number.eq(0)]
+            with m.If(walker.port.answer):
+                m.d.sync += [faults.eq(walker.port.read_data), length.eq(emitter.place), number.eq(0)]
                 m.d.comb += emitter.begin.eq(1)
                 m.next = "seal"
         with m.State("seal"):
@@ -257,3 +265,11 @@ class Device(wiring.Component):
             m.d.comb += [sender.send.eq(1), sender.length.eq(length), receiver.take.eq(1)]
             m.d.sync += self._expected.eq(self._expected + self._session)
             m.next = "idle"
+
+
+def _request(port) -> Value:
+    return Cat(port.write, port.address, port.write_data)
+
+
+def _answer(port) -> Value:
+    return Cat(port.answer, port.error, port.read_data)

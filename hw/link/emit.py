@@ -37,7 +37,8 @@ class Emitter(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        rest, left = Signal.like(self.item), Signal(range(ITEM_BYTES + 1))
+        rest = Signal.like(self.item)
+        left = Signal(range(ITEM_BYTES + 1))
         m.d.comb += [self.ready.eq(left == 0), self.write.eq(left != 0), self.data.eq(rest[:8])]
         with m.If(self.ready & self.valid):
             m.d.sync += [rest.eq(self.item), left.eq(ITEM_BYTES)]

@@ -4,7 +4,7 @@ from amaranth.hdl import Module, Mux, Signal, signed
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from hw.machine.host_port import host_signature
+from hw.machine.interfaces import HostAccess
 from hw.map.control import Control
 from hw.map.memory_map import Region, join
 
@@ -27,31 +27,32 @@ class Pause(wiring.Component):
     noted : In(1), steps : In(32)
         The host began a run of so many steps, or ended it (0): nothing is left of an earlier one.
     busy : In(1)
-    port_... : the host port's, `hw.machine.host_port`.
+    port : Out(HostAccess)
     """
 
     def __init__(self, state: int):
-        port = {f"port_{name}": member.flip() for name, member in host_signature(state).items()}
         begin = dict.fromkeys(("pause", "resume", "halt", "noted", "busy"), In(1))
-        super().__init__({**begin, "steps": In(32), "done": Out(1), **port})
+        super().__init__({**begin, "steps": In(32), "done": Out(1), "port": Out(HostAccess(state))})
 
     def elaborate(self, platform):
         m = Module()
-        run, left = Signal.like(self.steps), Signal.like(self.steps)
-        rest, some = Signal(signed(len(run) + 1)), Signal()
+        run = Signal.like(self.steps)
+        left = Signal.like(self.steps)
+        rest = Signal(signed(len(run) + 1))
+        some = Signal()
         m.d.sync += some.eq(left != 0)
         with m.If(self.noted):
             m.d.sync += [run.eq(self.steps), left.eq(0)]
 
         def ask(register, following, write=None):
             """An access to a control register; the next state waits for its answer."""
-            m.d.sync += [self.port_request.eq(1), self.port_address.eq(join(Region.CONTROL, 0, register, 0))]
-            m.d.sync += self.port_write.eq(write is not None)
+            m.d.sync += [self.port.request.eq(1), self.port.address.eq(join(Region.CONTROL, 0, register, 0))]
+            m.d.sync += self.port.write.eq(write is not None)
             if write is not None:
-                m.d.sync += self.port_write_data.eq(write)
+                m.d.sync += self.port.write_data.eq(write)
             m.next = following
 
-        m.d.sync += self.port_request.eq(0)
+        m.d.sync += self.port.request.eq(0)
 
         with m.FSM():
             with m.State("idle"):
@@ -72,20 +73,20 @@ class Pause(wiring.Component):
                 m.d.sync += [run.eq(left), left.eq(0)]
                 ask(Control.RUN, "asked", write=left)
             with m.State("stopping"):
-                with m.If(self.port_answer):
+                with m.If(self.port.answer):
                     m.next = "stopped"
             with m.State("stopped"):
                 with m.If(~self.busy):
                     ask(Control.STEPS_DONE, "counted")
             with m.State("counted"):
-                m.d.sync += rest.eq(run - self.port_read_data[: len(run)])
-                with m.If(self.port_answer):
+                m.d.sync += rest.eq(run - self.port.read_data[: len(run)])
+                with m.If(self.port.answer):
                     m.next = "rest"
             with m.State("rest"):
                 m.d.sync += left.eq(Mux(rest < 0, 0, rest))
                 m.next = "done"
             with m.State("asked"):
-                with m.If(self.port_answer):
+                with m.If(self.port.answer):
                     m.next = "done"
             with m.State("done"):
                 m.d.comb += self.done.eq(1)

@@ -67,7 +67,11 @@ class FrameReceiver(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        valid, data, error, broken, ends = Signal(), Signal(8), Signal(), Signal(), Signal()
+        valid = Signal()
+        data = Signal(8)
+        error = Signal()
+        broken = Signal()
+        ends = Signal()
         m.d.sync += [
             valid.eq(self.valid),
             data.eq(self.data),
@@ -119,8 +123,11 @@ class FrameReceiver(wiring.Component):
     def _decode(self, m, valid, data, ends):
         """(there is a byte behind COBS, it, more bytes of its block have to come) a cycle after the line's byte."""
         # Bytes that the block still has, whether no zero is behind it, whether there is one
-        left, full, begun = Signal(8), Signal(), Signal()
-        decoded, byte = Signal(), Signal(8)
+        left = Signal(8)
+        full = Signal()
+        begun = Signal()
+        decoded = Signal()
+        byte = Signal(8)
         m.d.sync += decoded.eq(0)
         with m.If(ends):
             m.d.sync += [left.eq(0), begun.eq(0)]
@@ -147,8 +154,11 @@ class FrameReceiver(wiring.Component):
     def _store(self, m, decoded, byte, count, header):
         """Payloads one behind the other in a memory, headers in registers; whether there is room for a byte."""
         m.submodules.payloads = payloads = BlockRam(width=8, depth=SLOTS * PAYLOAD_MOST)
-        coming, worked, waiting = Signal(range(SLOTS)), Signal(range(SLOTS)), Signal(range(SLOTS + 1))
-        room, place = Signal(), Signal(range(MOST + 2))
+        coming = Signal(range(SLOTS))
+        worked = Signal(range(SLOTS))
+        waiting = Signal(range(SLOTS + 1))
+        room = Signal()
+        place = Signal(range(MOST + 2))
         kept = [Signal(24 + 8, name=f"kept_{slot}") for slot in range(SLOTS)]
         first = Array(kept)[worked]
         m.d.comb += [

@@ -93,7 +93,10 @@ class LinkRegisters(wiring.Component):
         m = Module()
         lawful = (self.index < len(Link)) & ~(self.write & self.data[BITS:].any())
         registers = [Signal(BITS, name=register.name.lower()) for register in Link]
-        request, error, index, data = Signal(), Signal(), Signal(range(len(Link))), Signal(BITS)
+        request = Signal()
+        error = Signal()
+        index = Signal(range(len(Link)))
+        data = Signal(BITS)
         writes = Signal(len(Link))
         m.d.sync += [
             request.eq(self.request),
@@ -111,7 +114,9 @@ class LinkRegisters(wiring.Component):
         for counter in COUNTERS:
             happens = self.halted if counter == Link.HALTS else getattr(self, counter.name.lower())
             m.d.sync += registers[counter].eq(Mux(writes[counter], 0, registers[counter] + happens))
-        silence, over, ended = Signal(BITS), Signal(), Signal()
+        silence = Signal(BITS)
+        over = Signal()
+        ended = Signal()
         m.d.sync += [silence.eq(silence + 1), over.eq((silence >= most) & (most != 0))]
         with m.If(self.good_frames | writes[Link.WATCHDOG] | ~self.busy):
             m.d.sync += [silence.eq(0), over.eq(0)]

@@ -72,7 +72,9 @@ class FrameSender(wiring.Component):
         answer, length = self._queue(m, sent)
         places = range(ANSWER_MOST + CRC_BYTES + 1)
         place, begin, end, whole = (Signal(places, name=name) for name in ("place", "begin", "end", "whole"))
-        byte, here, wait = Signal(8), Signal(), Signal(range(LOOK))
+        byte = Signal(8)
+        here = Signal()
+        wait = Signal(range(LOOK))
         m.d.comb += [
             answers.address.eq(Cat(place[: len(self.write_place)], answer)),
             crc.data.eq(byte),
@@ -84,7 +86,9 @@ class FrameSender(wiring.Component):
         def look(at):
             return [place.eq(at), wait.eq(LOOK - 1)]
 
-        in_answer, of_crc, code = Signal(), Signal(range(CRC_BYTES)), Signal(8)
+        in_answer = Signal()
+        of_crc = Signal(range(CRC_BYTES))
+        code = Signal(8)
         after_answer, after_all, at_end, full, last, was_full = (
             Signal(name=name) for name in ("after_answer", "after_all", "at_end", "full", "last", "was_full")
         )
@@ -157,10 +161,14 @@ class FrameSender(wiring.Component):
         them one and two cycles after one of ``waits`` is set, or after ``next_out`` has moved on."""
         order = Array(Signal(range(ANSWERS), name=f"order_{n}") for n in range(ANSWERS))
         lengths = Array(Signal.like(self.length, name=f"length_{n}") for n in range(ANSWERS))
-        next_in, next_out = Signal(range(ANSWERS)), Signal(range(ANSWERS))
-        answer, length = Signal.like(self.answer), Signal.like(self.length)
+        next_in = Signal(range(ANSWERS))
+        next_out = Signal(range(ANSWERS))
+        answer = Signal.like(self.answer)
+        length = Signal.like(self.length)
         m.d.sync += [answer.eq(order[next_out]), length.eq(lengths[answer])]
-        asked, which, its_length = Signal(), Signal.like(answer), Signal.like(length)
+        asked = Signal()
+        which = Signal.like(answer)
+        its_length = Signal.like(length)
         m.d.sync += [
             asked.eq(self.send & ~self.waits.bit_select(self.answer, 1)),
             which.eq(self.answer),

@@ -73,7 +73,9 @@ class Receiver(wiring.Component):
         m.submodules += FFSynchronizer(self.rx, line, init=1)
         middle, apart = self._cycles // 2, max(1, self._cycles // 8)
         votes = middle - apart, middle, middle + apart
-        place, samples, bits = Signal(range(self._cycles)), Signal(2), Signal(range(10))
+        place = Signal(range(self._cycles))
+        samples = Signal(2)
+        bits = Signal(range(10))
         majority = (samples & line.replicate(2)).any() | samples.all()
         m.d.sync += [self.valid.eq(0), self.error.eq(0), place.eq(place + 1)]
         with m.If(place == self._cycles - 1):
@@ -121,7 +123,9 @@ class Transmitter(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        rest, place = Signal(9), Signal(range(self._cycles))  # a last 1 behind the stop bit ends it
+        # a last 1 behind the stop bit ends it
+        rest = Signal(9)
+        place = Signal(range(self._cycles))
         busy = Signal()
         m.d.comb += self.ready.eq(~busy)
         with m.If(self.valid & self.ready):

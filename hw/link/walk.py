@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out
 from hw.blocks.memory import READ_LATENCY
 from hw.link.frame import CRC, PAYLOAD_MOST
 from hw.link.protocol import HEAD, ITEM_BYTES, ITEMS_MOST, Kind
-from hw.machine.host_port import host_signature
+from hw.machine.interfaces import HostAccess
 from hw.map.control import Control
 from hw.map.memory_map import ADDRESS, Region, join
 
@@ -37,11 +37,10 @@ class Walker(wiring.Component):
         To a `hw.link.emit.Emitter`.
     noted : Out(1), steps : Out(32)
         A run was begun, of so many steps, or ended (0).
-    port_... : the host port's, `hw.machine.host_port`.
+    port : Out(HostAccess)
     """
 
     def __init__(self, state: int):
-        port = {f"port_{name}": member.flip() for name, member in host_signature(state).items()}
         super().__init__(
             {
                 "look": In(1),
@@ -58,16 +57,21 @@ class Walker(wiring.Component):
                 "item_ready": In(1),
                 "noted": Out(1),
                 "steps": Out(32),
-                **port,
+                "port": Out(HostAccess(state)),
             }
         )
 
     def elaborate(self, platform):
         m = Module()
         m.submodules.crc = self._crc = CRC(data_width=8).create()
-        self._dry, self._writes = Signal(), Signal()  # only looked through; the item is a word to be written
-        self._position, self._given = Signal(range(FARTHEST + 1)), Signal(range(1 << 15))
-        self._word, self._number, self._wait = Signal.like(self.item), Signal(3), Signal(range(READ_LATENCY + 1))
+        # only looked through; the item is a word to be written
+        self._dry = Signal(name="dry")
+        self._writes = Signal(name="writes")
+        self._position = Signal(range(FARTHEST + 1), name="position")
+        self._given = Signal(range(1 << 15), name="given")
+        self._word = Signal.like(self.item, name="word")
+        self._number = Signal(3, name="number")
+        self._wait = Signal(range(READ_LATENCY + 1), name="wait")
         self._segment = {name: Signal(q.width, name=name) for name, q in HEAD.items()}
         self._compared(m)
         m.d.comb += [self.place.eq(self._position), self._crc.data.eq(self._word)]
@@ -78,8 +82,12 @@ class Walker(wiring.Component):
 
     def _compared(self, m):
         """In registers: right from the second cycle on after what is compared has changed."""
-        self._through, self._short, self._too_many = Signal(), Signal(), Signal()
-        self._extent, self._runs, self._stops = Signal(range(FARTHEST + 1)), Signal(), Signal()
+        self._through = Signal(name="through")
+        self._short = Signal(name="short")
+        self._too_many = Signal(name="too_many")
+        self._extent = Signal(range(FARTHEST + 1), name="extent")
+        self._runs = Signal(name="runs")
+        self._stops = Signal(name="stops")
         address = self._segment["address"]
         m.d.sync += [
             self._through.eq(self._position == self.length),
@@ -156,9 +164,9 @@ class Walker(wiring.Component):
     def _words(self, m):
         address, across, kind, count = (self._segment[name] for name in ("address", "across", "kind", "count"))
         m.d.comb += [
-            self.port_write.eq(kind == Kind.WRITE),
-            self.port_address.eq(address),
-            self.port_write_data.eq(self._word),
+            self.port.write.eq(kind == Kind.WRITE),
+            self.port.address.eq(address),
+            self.port.write_data.eq(self._word),
             self.item.eq(self._word),
             self.steps.eq(Mux(self._runs, self._word, 0)),
         ]
@@ -173,19 +181,19 @@ class Walker(wiring.Component):
             with m.Else():
                 m.next = "between"
         with m.State("access"):
-            m.d.comb += self.port_request.eq(1)
+            m.d.comb += self.port.request.eq(1)
             m.next = "accessed"
         with m.State("accessed"):
-            with m.If(self.port_answer):
-                m.d.sync += [count.eq(count - 1), self.refused.eq(self.refused | self.port_error)]
+            with m.If(self.port.answer):
+                m.d.sync += [count.eq(count - 1), self.refused.eq(self.refused | self.port.error)]
                 self._next(m, address, across)
                 m.next = "words"
                 with m.If(kind != Kind.WRITE):
-                    m.d.sync += [self._word.eq(self.port_read_data), self._number.eq(0)]
+                    m.d.sync += [self._word.eq(self.port.read_data), self._number.eq(0)]
                     m.next = "give"
                     with m.If(kind == Kind.CHECK):
                         m.next = "sum"
-                m.d.comb += self.noted.eq((kind == Kind.WRITE) & ~self.port_error & (self._runs | self._stops))
+                m.d.comb += self.noted.eq((kind == Kind.WRITE) & ~self.port.error & (self._runs | self._stops))
         with m.State("sum"):
             m.d.comb += self._crc.valid.eq(1)
             m.d.sync += [self._word.eq(self._word >> 8), self._number.eq(self._number + 1)]

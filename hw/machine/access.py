@@ -1,11 +1,10 @@
 """The host's access to the memories of lanes, node updaters and lists."""
 
-from functools import cached_property
-
 from amaranth.hdl import Array, Cat, Module, Signal
 
 from golden.numbers.graph import AXES
-from hw.machine.host_port import CHOICE, MEMORY, HostPort
+from hw.machine.interfaces import MemoryAccess, named
+from hw.machine.routes import CHOICE, HANDOVER, MEMORY, PORT
 from hw.map.memory_map import NODE_FORCE, NODE_LOAD, NODE_STATE, Map, Region
 from hw.parameters import Parameters
 from hw.pipeline.choice import choose
@@ -13,92 +12,118 @@ from hw.pipeline.delay import DelayLines
 
 
 class Access:
-    """Connections between a `hw.machine.host_port.HostPort` and all that it writes and reads, written into a module.
+    """Connections between the host port and all that it reads and writes, written into a module.
 
-    Attributes
+    Parameters
     ----------
-    index, data : Signal
-        Of the access that is going on, from registers: with `strobe`.
+    m : Module
+    lines : DelayLines
+    parameters : Parameters
+    memories : MemoryAccess
+        The host port's.
+    idle, loading : Value
+        The host has the memories of lanes and updaters; it has those of lists.
     """
 
-    def __init__(self, m: Module, lines: DelayLines, parameters: Parameters, host: HostPort):
-        self._m, self._lines, self._parameters, self._host = m, lines, parameters, host
-        self.index, self.data = Signal.like(host.index), Signal.like(host.data)
-        m.d.sync += [self.index.eq(host.index), self.data.eq(host.data)]
+    def __init__(self, m: Module, lines: DelayLines, parameters: Parameters, memories: MemoryAccess, idle, loading):
+        self._m, self._lines, self._parameters, self._memories = m, lines, parameters, memories
+        self._idle, self._loading, self._words = idle, loading, named(memories.words)
+        self._index = Signal.like(memories.index, name="host_index")
+        self._data = Signal.like(memories.data, name="host_data")
+        m.d.sync += [self._index.eq(memories.index), self._data.eq(memories.data)]
         self._strobes = {}
 
-    def strobe(self, region: Region, word: int, lane: int | None = None) -> Signal:
-        """A write of the host to such a word, of such a lane, from a register."""
+    def to_nodes(self, updaters, lists):
+        """Connect updaters (`hw.machine.interfaces.UpdaterAccess`) and their lists
+        (`hw.machine.interfaces.EntryAccess`)."""
+        m, p = self._m, self._parameters
+        row, column = p.node_place(self._index)
+        if p.cycles_per_node > 1:
+            axis = self._axis()
+            m.d.comb += [host.axis.eq(axis) for host in updaters]
+        entry_strobe = self._strobe(Region.NODE, Map(p).words(Region.NODE).index("entry"))
+        nodes = []
+        for number, (host, entries) in enumerate(zip(updaters, lists, strict=True)):
+            m.d.comb += [
+                host.active.eq(self._idle),
+                host.index.eq(row),
+                host.data.eq(self._data),
+                host.write.state.eq(self._node_strobes(NODE_STATE, number)),
+                host.write.load.eq(self._node_strobes(NODE_LOAD, number)),
+                host.write.mass.eq(self._node_strobes(["inverse_mass"], number)),
+            ]
+            self._to_list(entries, f"node_entries{number}", row, entry_strobe & (column == number))
+            words = named(host.words)
+            reads = [words[f"state_{name}"] for name in NODE_STATE] + [words[name] for name in NODE_LOAD]
+            reads += [host.words.mass, entries.word, *(words[name] for name in NODE_FORCE)]
+            nodes.append(self._chosen(reads, f"node{number}"))
+        _, column = p.node_place(self._memories.index)
+        m.d.comb += self._words["node"].eq(self._then_chosen(nodes, column, "node"))
+
+    def to_lanes(self, lanes, lists):
+        """Connect lanes (`hw.machine.interfaces.LaneAccess`) and their lists (`hw.machine.interfaces.EntryAccess`)."""
+        edges, materials, tables = [], [], []
+        for number, (host, entries) in enumerate(zip(lanes, lists, strict=True)):
+            write = host.write
+            self._m.d.comb += [
+                host.active.eq(self._idle),
+                host.index.eq(self._index),
+                host.data.eq(self._data),
+                host.field.eq(self._memories.word),
+                *(bits.eq(self._node_strobes(NODE_STATE, n)) for n, bits in enumerate(write.node)),
+                write.length.eq(self._strobe(Region.EDGE, 1, number)),
+                write.ratio.eq(self._strobe(Region.EDGE, 2, number)),
+                write.table.eq(Cat(self._strobe(Region.TABLE, 0), self._strobe(Region.TABLE, 1))),
+                *(bit.eq(self._strobe(Region.MATERIAL, k)) for k, bit in enumerate(write.material)),
+            ]
+            self._to_list(entries, f"edge_entries{number}", self._index, self._strobe(Region.EDGE, 0, number))
+            edges.append(self._chosen([entries.word, host.words.length, host.words.ratio], f"edge{number}"))
+            materials.append(host.words.material)
+            half = len(host.words.table) // 2
+            tables.append(self._chosen([host.words.table[:half], host.words.table[half:]], f"table{number}"))
+        for name, choices in (("edge", edges), ("material", materials), ("table", tables)):
+            word = self._then_chosen(choices, self._memories.lane, name)
+            self._m.d.comb += self._words[name].eq(word)
+
+    def _to_list(self, entries, name, index, strobe):
+        """A list's memory is as far away as the others, and has its registers at its ports."""
+
+        def later(value, label):
+            return self._lines.later(value, HANDOVER - PORT, name=f"{name}_{label}", reset=label == "write")
+
+        self._m.d.comb += [
+            entries.active.eq(self._loading),
+            entries.index.eq(later(index, "index")),
+            entries.write.eq(later(strobe, "write")),
+            entries.data.eq(later(self._data, "data")),
+        ]
+
+    def _strobe(self, region: Region, word: int, lane: int | None = None) -> Signal:
+        """Return the strobe of the host's writes to such a word, of such a lane, from a register."""
         if (region, word, lane) not in self._strobes:
-            here = self._host.strobe[region] & (self._host.word == word)
+            here = self._memories.strobe[region] & (self._memories.word == word)
             strobe = Signal(name=f"write_{region.name.lower()}_{word}" + ("" if lane is None else f"_{lane}"))
-            self._m.d.sync += strobe.eq(here if lane is None else here & (self._host.lane == lane))
+            self._m.d.sync += strobe.eq(here if lane is None else here & (self._memories.lane == lane))
             self._strobes[region, word, lane] = strobe
         return self._strobes[region, word, lane]
 
-    def to_nodes(self, updaters, entries, idle):
-        """A node's memories, in the updater that has it; ``entries``: of the updaters' lists."""
-        row, column = self._parameters.node_place(self.index)
-        nodes = []
-        for number, (updater, entry) in enumerate(zip(updaters, entries, strict=True)):
-            self._m.d.comb += [
-                updater.host.eq(idle),
-                updater.host_index.eq(row),
-                updater.host_data.eq(self.data),
-                updater.host_write_state.eq(self._node_strobes(NODE_STATE, number)),
-                updater.host_write_load.eq(self._node_strobes(NODE_LOAD, number)),
-                updater.host_write_mass.eq(self._node_strobes(["inverse_mass"], number)),
-            ]
-            if self._parameters.cycles_per_node > 1:
-                self._m.d.comb += updater.host_axis.eq(self._axis)
-            reads = [getattr(updater, f"host_{name}") for name in (*NODE_STATE, *NODE_LOAD)]
-            reads += [updater.host_mass, entry, *(getattr(updater, f"host_{name}") for name in NODE_FORCE)]
-            nodes.append(self._chosen(reads, f"node{number}"))
-        column = self._parameters.node_place(self._host.index)[1]
-        self._m.d.comb += self._host.node_word.eq(self._then_chosen(nodes, column, "node"))
+    def _node_strobes(self, names, number):
+        words = Map(self._parameters).words(Region.NODE)
+        _, column = self._parameters.node_place(self._index)
+        return Cat(self._strobe(Region.NODE, words.index(name)) & (column == number) for name in names)
 
-    @cached_property
-    def _axis(self):
-        """That of a node's word, beside its index."""
+    def _axis(self) -> Signal:
+        """Return the axis of the addressed node word, aligned with the index."""
         suffixes = (word.rpartition("_")[2] for word in Map(self._parameters).words(Region.NODE))
         numbers = Array([AXES.index(suffix) if suffix in AXES else 0 for suffix in suffixes])
         axis = Signal(range(len(AXES)), name="host_axis")
-        self._m.d.sync += axis.eq(numbers[self._host.word])
+        self._m.d.sync += axis.eq(numbers[self._memories.word])
         return axis
 
-    def _node_strobes(self, names, number):
-        words = Map(self._parameters).words(Region.NODE)
-        _, column = self._parameters.node_place(self.index)
-        return Cat(self.strobe(Region.NODE, words.index(name)) & (column == number) for name in names)
-
-    def to_lanes(self, lanes, entries, idle):
-        """A lane's memories; ``entries``: of the lanes' lists."""
-        edges, materials, tables = [], [], []
-        for number, (lane, entry) in enumerate(zip(lanes, entries, strict=True)):
-            updates = range(self._parameters.updates)
-            self._m.d.comb += [
-                lane.host.eq(idle),
-                lane.host_index.eq(self.index),
-                lane.host_data.eq(self.data),
-                *(getattr(lane, f"host_write_node{n}").eq(self._node_strobes(NODE_STATE, n)) for n in updates),
-                lane.host_write_length.eq(self.strobe(Region.EDGE, 1, number)),
-                lane.host_write_ratio.eq(self.strobe(Region.EDGE, 2, number)),
-                lane.host_write_table.eq(Cat(self.strobe(Region.TABLE, 0), self.strobe(Region.TABLE, 1))),
-                lane.host_field.eq(self._host.word),
-                *(bit.eq(self.strobe(Region.MATERIAL, k)) for k, bit in enumerate(lane.host_write_material)),
-            ]
-            edges.append(self._chosen([entry, lane.host_length, lane.host_ratio], f"edge{number}"))
-            materials.append(lane.host_material)
-            half = len(lane.host_table) // 2
-            tables.append(self._chosen([lane.host_table[:half], lane.host_table[half:]], f"table{number}"))
-        for name, choices in (("edge", edges), ("material", materials), ("table", tables)):
-            word = self._then_chosen(choices, self._host.lane, name)
-            self._m.d.comb += getattr(self._host, f"{name}_word").eq(word)
-
     def _chosen(self, words, name):
-        """The word that is read, of one lane or updater."""
-        return choose(self._m, self._lines, words, self._host.word, cycles=CHOICE, name=name, ahead=MEMORY)
+        """Return the word that is read, of one lane or updater."""
+        return choose(self._m, self._lines, words, self._memories.word, cycles=CHOICE, name=name, ahead=MEMORY)
 
     def _then_chosen(self, words, index, name):
-        """Of all lanes' or updaters' words, a choice later."""
+        """Return that of the lane or updater that is read, `CHOICE` cycles later."""
         return choose(self._m, self._lines, words, index, cycles=CHOICE, name=name, ahead=MEMORY + CHOICE)

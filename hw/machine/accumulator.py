@@ -10,16 +10,18 @@ from amaranth.lib.wiring import In, Out
 from golden.datapath.formats import Formats
 from golden.numbers.graph import AXES
 from hw.blocks.memory import READ_LATENCY, BlockRam
+from hw.machine.interfaces import Vector, named
 from hw.parameters import node_place
+from hw.pipeline.delay import DelayLines
 
 ANNOUNCED = READ_LATENCY + 1
-"""Cycles from the announcement of a force to the force: a register behind the block RAM, whose place is given."""
+"""Cycles from the announcement of a force to the force; a register follows the block RAM, as everywhere."""
 
 WRITTEN = 2
-"""Cycles from a force to the first in which its sum may be read."""
+"""Cycles from a force to the first in which its sum can be read: a register for the sum, then the memory."""
 
 READ = READ_LATENCY + 1
-"""Cycles from a row of nodes to the sums on it: they have a long way to go, from a register."""
+"""Cycles from a row of nodes to the sums on it, which leave from registers: their routes are long."""
 
 
 class Accumulator(wiring.Component):
@@ -29,9 +31,8 @@ class Accumulator(wiring.Component):
     Integer addition is associative: the order changes nothing. Nothing is cleared: the first force on a node in a
     stage replaces what is there.
 
-    A force is announced (``valid``, ``node``, ``first``) `ANNOUNCED` cycles before it comes (``pull_*``). Its sum may
-    be read `WRITTEN` cycles after that, `READ` cycles after ``sum_row`` as ``sum<n>_*``: the sums on the ``updates``
-    nodes of a row of nodes.
+    A force is announced (``valid``, ``node``, ``first``) `ANNOUNCED` cycles before it comes (``pull``). Its sum can be
+    read `WRITTEN` cycles after that: `READ` cycles after ``sum_row``, ``sums`` are those on the nodes of that row.
 
     Parameters
     ----------
@@ -39,80 +40,106 @@ class Accumulator(wiring.Component):
     nodes, updates : int
         Capacity; nodes in a row of nodes, a power of two.
     subtract : bool
-        Whether forces are taken with the opposite sign: the second end of an edge gets the same integers.
+        Forces are taken with the opposite sign: the second end of an edge gets the same integers.
+
+    Members
+    -------
+    reset : In(1)
+        The circuit's reset, from a register near by; it clears the announcements that are under way.
+    valid : In(1), node : In, first : In(1)
+    pull : In(Vector)
+    sum_row : In, sums : Out(Vector) for each updater
+
+    Raises
+    ------
+    ValueError
+        If a constant is too small: an announcement must leave time to read, a sum to be registered and written.
     """
 
     def __init__(self, *, formats: Formats, nodes: int, updates: int = 1, subtract: bool = False):
         self._nodes, self._updates, self._subtract = nodes, updates, subtract
+        for name, value, least in (
+            ("ANNOUNCED", ANNOUNCED, READ_LATENCY + 1),
+            ("WRITTEN", WRITTEN, 2),
+            ("READ", READ, READ_LATENCY),
+        ):
+            if value < least:
+                raise ValueError(f"{name} must be at least {least} cycles, not {value}")
         bits = max(1, (nodes - 1).bit_length())
         self._rows = -(-nodes // updates)
-        width = formats.accumulator.width
+        self._width = formats.accumulator.width
         self.kind = f"accumulator_{'subtract' if subtract else 'add'}"
         super().__init__(
             {
+                "reset": In(1),
                 "valid": In(1),
                 "node": In(bits),
                 "first": In(1),
-                **{f"pull_{axis}": In(signed(width)) for axis in AXES},
+                "pull": In(Vector(formats.accumulator)),
                 "sum_row": In(max(1, (self._rows - 1).bit_length())),
-                **{f"sum{n}_{axis}": Out(signed(width)) for n in range(updates) for axis in AXES},
+                "sums": Out(Vector(formats.accumulator)).array(updates),
             }
         )
 
     def elaborate(self, platform):
         m = Module()
         # The force under way: k cycles after its announcement
-        valid, node, first = [self.valid], [self.node], [self.first]
-        for k in range(1, ANNOUNCED + WRITTEN):
-            lines = [(valid, "valid"), (node, "node")] + ([(first, "first")] if k < ANNOUNCED - 1 else [])
-            for line, name in lines:
-                register = Signal.like(line[0], name=f"{name}_{k}", reset_less=name != "valid")
-                m.d.sync += register.eq(line[-1])
-                line.append(register)
+        now, written = ANNOUNCED, ANNOUNCED + WRITTEN - 1
+        valid = self._line(m, self.valid, "valid", written, reset=self.reset)
+        node, first = self._line(m, self.node, "node", written), self._line(m, self.first, "first", now - 2)
 
-        # At ANNOUNCED it meets its force. A sum of 1 to 4 cycles ago is not in the word that was read: the latest of
-        # them counts. Which it is, is found out before; all but that of 1 cycle ago are already there a cycle before
-        now, recent = ANNOUNCED, range(1, ANNOUNCED + WRITTEN)
+        # At ANNOUNCED it meets its force. The word that was read lacks the sums of the last few cycles: the latest of
+        # them on the same node counts. It is found beforehand; all but the sum of the cycle before are already there
+        recent = range(1, READ_LATENCY + WRITTEN + 1)
         same = [Signal(name=f"same_{age}", reset_less=True) for age in recent]
         for age, bit in zip(recent, same, strict=True):
             m.d.sync += bit.eq(valid[now - 3 + age] & (node[now - 3 + age] == node[now - 3]))
         hits = [Signal(name=f"hit_{age}", reset_less=True) for age in recent]
-        stored, latest = Signal(reset_less=True), Signal(reset_less=True)
+        stored, latest = (Signal(name=name, reset_less=True) for name in ("stored", "latest"))
         for number, hit in enumerate(hits):
             m.d.sync += hit.eq(~first[now - 2] & same[number] & ~Cat(same[:number]).any())
         m.d.sync += [stored.eq(~first[now - 2] & ~Cat(same).any()), latest.eq(hits[0])]
 
+        lines, pulls, sums = DelayLines(m), named(self.pull), [named(total) for total in self.sums]
         for axis in AXES:
-            pull, width = getattr(self, f"pull_{axis}"), len(getattr(self, f"sum0_{axis}"))
-            m.submodules[f"sum_{axis}_edges"] = own = BlockRam(width=width, depth=self._nodes)
-            # Of 1 to 3 cycles ago
-            sums = [Signal(signed(width), name=f"sum_{axis}_{age}", reset_less=True) for age in recent[:-1]]
-            earlier = Signal(signed(width), name=f"earlier_{axis}", reset_less=True)
-            m.d.sync += earlier.eq(_chosen([(stored, own.data), *zip(hits[1:], sums, strict=True)]))
-            before = Signal(signed(width), name=f"before_{axis}")
-            m.d.comb += before.eq(_chosen([(latest, sums[0])]) | earlier)
-            m.d.sync += sums[0].eq(before - pull if self._subtract else before + pull)
-            m.d.sync += Cat(*sums[1:]).eq(Cat(*sums[:-1]))
-            where = node[now + 1]
-            m.d.comb += [
-                own.write.eq(valid[now + 1]),
-                own.write_address.eq(where),
-                own.write_data.eq(sums[0]),
-                own.address.eq(self.node),
-            ]
-            row, column = node_place(where, self._updates)
+            own = self._memory(m, f"sum_{axis}_edges", self._nodes, node[now - READ_LATENCY - 1])
+            # Sums of 1 cycle ago and more
+            past = [Signal(signed(self._width), name=f"sum_{axis}_{age}", reset_less=True) for age in recent[:-1]]
+            earlier = Signal(signed(self._width), name=f"earlier_{axis}", reset_less=True)
+            m.d.sync += earlier.eq(_chosen([(stored, own.data), *zip(hits[1:], past, strict=True)]))
+            before = Signal(signed(self._width), name=f"before_{axis}")
+            m.d.comb += before.eq(_chosen([(latest, past[0])]) | earlier)
+            m.d.sync += past[0].eq(before - pulls[axis] if self._subtract else before + pulls[axis])
+            m.d.sync += Cat(*past[1:]).eq(Cat(*past[:-1]))
+            row, column = node_place(node[written], self._updates)
+            _write(m, own, valid[written], node[written], past[WRITTEN - 2])
             for n in range(self._updates):
-                m.submodules[f"sum_{axis}_nodes{n}"] = copy = BlockRam(width=width, depth=self._rows)
-                m.d.comb += [
-                    copy.write.eq(valid[now + 1] & (column == n)),
-                    copy.write_address.eq(row),
-                    copy.write_data.eq(sums[0]),
-                    copy.address.eq(self.sum_row),
-                ]
-                m.d.sync += getattr(self, f"sum{n}_{axis}").eq(copy.data)
+                copy = self._memory(m, f"sum_{axis}_nodes{n}", self._rows, self.sum_row)
+                _write(m, copy, valid[written] & (column == n), row, past[WRITTEN - 2])
+                word = lines.later(copy.data, READ - READ_LATENCY, name=f"sum_{axis}_read{n}")
+                m.d.comb += sums[n][axis].eq(word)
+        lines.build()
         return m
+
+    def _line(self, m, value, name, cycles, *, reset=None) -> list:
+        """Return the value 0 to ``cycles`` cycles later; ``reset`` clears its registers."""
+        line = [value]
+        for k in range(1, cycles + 1):
+            register = Signal.like(value, name=f"{name}_{k}", reset_less=True)
+            m.d.sync += register.eq(line[-1] if reset is None else Mux(reset, 0, line[-1]))
+            line.append(register)
+        return line
+
+    def _memory(self, m, name, depth, address) -> BlockRam:
+        m.submodules[name] = ram = BlockRam(width=self._width, depth=depth)
+        m.d.comb += ram.address.eq(address)
+        return ram
+
+
+def _write(m, ram: BlockRam, strobe, address, word):
+    m.d.comb += [ram.write.eq(strobe), ram.write_address.eq(address), ram.write_data.eq(word)]
 
 
 def _chosen(choices) -> Value:
-    """The one word whose bit is 1, or 0."""
+    """Return the one word whose bit is 1, or 0."""
     return functools.reduce(operator.or_, (Mux(bit, word, 0) for bit, word in choices))

@@ -1,36 +1,38 @@
-"""How far one list has come, and whether that is what the entries of the other wait for: known from registers."""
+"""Counts the entries of one list that are done, for the entries of the other list that wait for them."""
 
 from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from hw.machine.interfaces import Completion
+
 
 class CompletionCounter(wiring.Component):
-    """Counts a list's entries as they are done, and compares the number with what the entries of another list need.
+    """Counts a list's entries as they are done, and compares the count with what the other list's entries need.
 
-    The other list's entries stand one behind the other: the one in front, the one behind it and the one after that
-    (`hw.machine.issue_register`, `hw.machine.fetch`). Where each of them will stand in the next cycle is known before
-    what is done by then, so that comparing, which takes long, is over before it matters.
+    All comparisons are made a cycle ahead, because the comparator is slow: of the other list's entry in its issue
+    register, of the one after it, and of the one after that. Where each of them stands in the next cycle is known
+    before the count is.
 
     Parameters
     ----------
     width : int
-        Bits of what an entry needs, and of the count.
+        Bits of a need, and of the count.
     first : int
-        0 or 1: what is counted from.
+        0 or 1: the count of a list of which nothing is done.
 
     Members
     -------
     clear : In(1)
         Nothing is done.
-    done, done_last : In(1)
-        One more entry is done; it is its list's last, with which the count begins again.
-    front, behind, after : In
-        What the entries need: each of them less than the count.
-    moves : In(1)
-        In the next cycle the entry behind is in front, the one after that is behind.
-    front_reached, behind_reached : Out(1)
-        There is what is needed, as the count is in this cycle.
+    completion : In(Completion)
+        With a list's last entry the count begins again.
+    need, next_need, second_need : In
+        What the entry in the issue register needs, the one after it, and the second after it: less than the count.
+    advances : In(1)
+        In the next cycle the next entry is in the issue register.
+    reached, next_reached : Out(1)
+        The needs of the entry in the issue register and of the next are met by the count in this cycle.
     """
 
     def __init__(self, *, width: int, first: int):
@@ -39,33 +41,32 @@ class CompletionCounter(wiring.Component):
         super().__init__(
             {
                 "clear": In(1),
-                "done": In(1),
-                "done_last": In(1),
-                "front": In(width),
-                "behind": In(width),
-                "after": In(width),
-                "moves": In(1),
-                "front_reached": Out(1),
-                "behind_reached": Out(1),
+                "completion": In(Completion()),
+                "need": In(width),
+                "next_need": In(width),
+                "second_need": In(width),
+                "advances": In(1),
+                "reached": Out(1),
+                "next_reached": Out(1),
             }
         )
 
     def elaborate(self, platform):
-        m = Module()
-        count = Signal.like(self.front, reset_less=True)  # of less than the list's last
-        with m.If(self.done):
-            m.d.sync += count.eq(Mux(self.done_last, self._first, count + 1))
+        m, done, last = Module(), self.completion.done, self.completion.last
+        count = Signal.like(self.need, name="count", reset_less=True)  # of less than the list's last
+        with m.If(done):
+            m.d.sync += count.eq(Mux(last, self._first, count + 1))
         with m.If(self.clear):
             m.d.sync += count.eq(self._first)
 
         def reached(need):
-            """``need < count``, the count as it will be in the next cycle: one more is a bit more to compare."""
+            """``need < count`` as of the next cycle: one more that is done is one more bit to compare."""
             none_done = ~need.any() if self._first else 0
-            return Mux(self.done & self.done_last, none_done, Cat(~self.done, need) < Cat(1, count))
+            return Mux(done & last, none_done, Cat(~done, need) < Cat(1, count))
 
-        front, behind, after = (reached(need) for need in (self.front, self.behind, self.after))
+        entry, following, second = (reached(need) for need in (self.need, self.next_need, self.second_need))
         m.d.sync += [
-            self.front_reached.eq(Mux(self.moves, behind, front)),
-            self.behind_reached.eq(Mux(self.moves, after, behind)),
+            self.reached.eq(Mux(self.advances, following, entry)),
+            self.next_reached.eq(Mux(self.advances, second, following)),
         ]
         return m

@@ -11,20 +11,20 @@ from golden.datapath.formats import Formats
 from golden.datapath.graphs import edge_graph
 from golden.datapath.tables import inverse_table
 from hw.blocks.memory import BlockRam
+from hw.machine.interfaces import Named, named
 from hw.pipeline.cost import Cost
-from hw.pipeline.operations import shape
 from hw.pipeline.pipe import Pipe
 from hw.pipeline.schedule import Schedule
 
 PATIENCE = 16
-"""Cycles that an edge's own words may come after its force: its nodes are updated meanwhile."""
+"""Cycles that an edge's own words may come after its force: its nodes are being updated then."""
 
 
 class EdgeDatapath:
     """`golden.datapath.graphs.edge_graph` with its schedule.
 
-    Everything but the two nodes' positions comes late: velocities, materials and the edge's state are read when they
-    are needed.
+    Only the two nodes' positions come with the edge: velocities, materials and the edge's state are read when they are
+    needed.
     """
 
     def __init__(self, formats: Formats, tables: int, cost: Cost):
@@ -42,11 +42,11 @@ class EdgeDatapath:
 
     @cached_property
     def faults(self) -> list[str]:
-        """Names of all faults that the datapath can report, sorted."""
+        """The names of all faults that the datapath can report, sorted."""
         return fault_names(self.graph)
 
     def ready(self, output: str) -> int:
-        """The cycle in which an output is valid, counted from the cycle of the nodes; from a register in any case."""
+        """Return the cycle in which an output is valid, counted from that of the nodes; it comes from a register."""
         node = self.graph.outputs[output]
         return self.schedule.cycle[node] + (self.schedule.start[node] == self.schedule.cycle[node])
 
@@ -64,9 +64,11 @@ class EdgeProcessor(wiring.Component):
 
     Members
     -------
+    reset : In(1)
+        The circuit's reset, from a register near by; it clears what is valid, and the faults.
     valid : In(1)
-    <inputs of the graph> : In
-    <outputs of the graph> : Out
+    inputs : In(Named), outputs : Out(Named)
+        Of the graph.
     fault : Out
         One bit for each name in ``datapath.faults``: 1 when it has happened to a valid edge, `FAULT_LATENCY` cycles
         before.
@@ -84,9 +86,10 @@ class EdgeProcessor(wiring.Component):
         address = max(1, (self._depth - 1).bit_length())
         super().__init__(
             {
+                "reset": In(1),
                 "valid": In(1),
-                **{name: In(shape(node.fmt)) for name, node in graph.inputs.items()},
-                **{name: Out(shape(node.fmt)) for name, node in graph.outputs.items()},
+                "inputs": In(Named(graph.inputs)),
+                "outputs": Out(Named(graph.outputs)),
                 "fault": Out(len(datapath.faults)),
                 "table_write": In(2),
                 "table_address": In(address),
@@ -98,11 +101,10 @@ class EdgeProcessor(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        graph = self.datapath.graph
         tables = {"inverse": self._inverse(m), "damper": self._damper(m)}
-        inputs = {name: getattr(self, name) for name in graph.inputs}
-        pipe = Pipe(m, self.datapath.schedule, inputs, self.valid, tables)
-        m.d.comb += [getattr(self, name).eq(pipe.output(name, self.datapath.ready(name))) for name in graph.outputs]
+        pipe = Pipe(m, self.datapath.schedule, named(self.inputs), self.valid, tables, reset=self.reset)
+        for name, port in named(self.outputs).items():
+            m.d.comb += port.eq(pipe.output(name, self.datapath.ready(name)))
         m.d.comb += self.fault.eq(Cat(pipe.faults[name] for name in self.datapath.faults))
         pipe.build()
         return m
@@ -145,6 +147,6 @@ class EdgeProcessor(wiring.Component):
 
 
 def fault_names(graph) -> list[str]:
-    """Names of all faults that a graph can report, sorted."""
+    """Return the names of all faults that a graph can report, sorted."""
     saturating = {node.fmt.name for node in graph.nodes if node.kind in {"round", "shift_right"}}
     return sorted((saturating | {name for name, _ in graph.faults}) - {""})

@@ -1,20 +1,26 @@
-"""The memory of a list: entries for its `hw.machine.fetch`, or for the host while nothing runs."""
+"""The memory of a list."""
 
-from amaranth.hdl import Module, Signal
+from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hw.blocks.memory import READ_LATENCY, BlockRam
-from hw.machine.host_port import registered_ports
+from hw.machine.interfaces import EntryAccess
+from hw.machine.memory_ports import Use, registered_ports
+from hw.machine.routes import PORT
+from hw.pipeline.delay import DelayLines
 
-LATENCY = 1 + READ_LATENCY + 1
-"""Cycles from a list's address to its entry: a register before the memory, whose place is given, another behind it."""
+REGISTERS = 1
+"""Registers after the memory: block RAMs sit at fixed sites."""
+
+LATENCY = PORT + READ_LATENCY + REGISTERS
+"""Cycles from a list's address to its entry."""
 
 
 class EntryMemory(wiring.Component):
-    """A memory with registers of its own at all of its ports, wherever those are that read and write it.
+    """A memory of a list's entries, read by its `hw.machine.fetch` or, while nothing runs, by the host.
 
-    Throughput: an entry a cycle, `LATENCY` cycles behind its address.
+    Throughput: an entry a cycle, `LATENCY` cycles after its address.
 
     Parameters
     ----------
@@ -22,40 +28,23 @@ class EntryMemory(wiring.Component):
 
     Members
     -------
-    host : In(1)
-        The host reads; if not, the fetch.
-    host_address, fetch_address : In
-    write : In(1), write_address, write_data : In
-        Only while nothing runs.
-    data : Out, entry : Out
-        The word, and the same a cycle later, from a register.
+    host : In(EntryAccess)
+        It has the memory's read port while ``active``.
+    address : In, entry : Out
     """
 
     def __init__(self, *, width: int, depth: int):
         self._ram = ram = BlockRam(width=width, depth=depth)
         self.kind = f"entry_memory_{depth}x{width}"
         bits = len(ram.address)
-        super().__init__(
-            {
-                "host": In(1),
-                "host_address": In(bits),
-                "fetch_address": In(bits),
-                "write": In(1),
-                "write_address": In(bits),
-                "write_data": In(width),
-                "data": Out(width),
-                "entry": Out(width),
-            }
-        )
+        super().__init__({"host": In(EntryAccess(bits, width)), "address": In(bits), "entry": Out(width)})
 
     def elaborate(self, platform):
-        m = Module()
+        m, host = Module(), self.host
+        lines = DelayLines(m)
         m.submodules.ram = ram = self._ram
-        by_host = {port: getattr(self, port) for port in ("write", "write_address", "write_data")}
-        registered_ports(
-            m, ram, "ram", self.host, {"address": self.host_address, **by_host}, {"address": self.fetch_address}
-        )
-        entry = Signal(len(self.entry), reset_less=True)
-        m.d.sync += entry.eq(ram.data)
-        m.d.comb += [self.data.eq(ram.data), self.entry.eq(entry)]
+        by_host = Use(address=host.index, write=host.write, write_address=host.index, write_data=host.data)
+        registered_ports(m, ram, "ram", host.active, by_host, Use(address=self.address))
+        m.d.comb += [host.word.eq(ram.data), self.entry.eq(lines.later(ram.data, REGISTERS, name="entry"))]
+        lines.build()
         return m

@@ -1,60 +1,65 @@
-"""The entry at the front of a list, and whether it may go: known one cycle ahead, from registers."""
+"""The register from which a list's entries are issued."""
 
 from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from hw.machine.interfaces import Advance
+
 LATENCY = 1
-"""Cycles from an entry behind the front to it in front, and from a reason to go to going."""
+"""Cycles from a fetched entry to the entry in the register, and from a reason to issue to the issue."""
 
 
 class IssueRegister(wiring.Component):
-    """A register between a `hw.machine.fetch.Fetch` and what its entries start.
+    """A register between a list's `hw.machine.fetch` and what its entries start.
 
-    What makes an entry ready is compared while it still stands behind the front, or again in every cycle in which it
-    stands there: that it ``goes`` is in a register, a cycle after the reason, and an entry may go in every cycle. So is
-    that there is room in front, which all of the entry's registers wait for.
+    Whether an entry is ready is known one cycle ahead, so that ``issue`` and ``advances`` come from registers: the
+    comparisons are slow, and every bit of the entry hangs on ``advances``. An entry can be issued in every cycle.
 
     Members
     -------
     flush : In(1)
-    behind, behind_valid, behind_ready : In
-        The next entry, if there is one; whether it is ready.
-    entry, valid, goes : Out
-        The entry in front, if there is one; it goes in this cycle.
-    moves : Out(1)
-        In the next cycle the one behind is in front, or none.
-    ready : In(1)
-        The entry in front is ready.
+        Empty the register.
+    advance : In(Advance), next : In
+        The fetched entry.
+    entry, valid, issue : Out
+        The entry in the register, if there is one; it is issued in this cycle.
+    advances : Out(1)
+        In the next cycle the register holds the entry that is now fetched, or none.
+
+    Raises
+    ------
+    ValueError
+        If `LATENCY` isn't 1: there is one register.
     """
 
     def __init__(self, *, width: int):
+        if LATENCY != 1:
+            raise ValueError(f"the latency of an issue register must be 1, not {LATENCY}")
         self.kind = f"issue_register_{width}"
         super().__init__(
             {
                 "flush": In(1),
-                "behind": In(width),
-                "behind_valid": In(1),
-                "behind_ready": In(1),
+                "advance": In(Advance()),
+                "next": In(width),
                 "entry": Out(width),
                 "valid": Out(1),
-                "goes": Out(1),
-                "moves": Out(1, init=1),
-                "ready": In(1),
+                "issue": Out(1),
+                "advances": Out(1, init=1),
             }
         )
 
     def elaborate(self, platform):
-        m = Module()
-        with m.If(self.moves):
+        m, advance = Module(), self.advance
+        with m.If(self.advances):
             m.d.sync += [
-                self.entry.eq(self.behind),
-                self.valid.eq(self.behind_valid),
-                self.goes.eq(self.behind_valid & self.behind_ready),
-                self.moves.eq(~self.behind_valid | self.behind_ready),
+                self.entry.eq(self.next),
+                self.valid.eq(advance.next_valid),
+                self.issue.eq(advance.next_valid & advance.next_ready),
+                self.advances.eq(~advance.next_valid | advance.next_ready),
             ]
         with m.Else():
-            m.d.sync += [self.goes.eq(self.ready), self.moves.eq(self.ready)]
+            m.d.sync += [self.issue.eq(advance.ready), self.advances.eq(advance.ready)]
         with m.If(self.flush):
-            m.d.sync += [self.valid.eq(0), self.goes.eq(0), self.moves.eq(1)]
+            m.d.sync += [self.valid.eq(0), self.issue.eq(0), self.advances.eq(1)]
         return m

@@ -5,6 +5,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from golden.datapath.rk4 import RK4
+from hw.machine.interfaces import ListControl
 
 STAGE_BITS = max(1, (RK4.stages - 1).bit_length())
 
@@ -32,27 +33,16 @@ class Sequencer(wiring.Component):
         End the run with the step that the updates are in, or with the next if they are past its first stage.
     busy : Out(1), steps_done : Out
         The steps are counted a cycle late.
-    row_valid, row_goes, row_last, row_nodes : In(1)
-        A row stands in its `hw.machine.issue_register`; it goes in this cycle; it is its list's last; all its
-        nodes have been updated in the stage that the updates are in.
-    row_behind_nodes : In(1)
-        The same of the row behind the front.
-    row_ready, row_behind_ready : Out(1)
-        The row in front is ready to go in the next cycle; the one behind would be, if the one in front went now.
-    row_stage : Out
-        Of the row in front.
-    node_valid, node_goes, node_last, node_rows : In(1)
-        A node stands in front; it goes in this cycle; it is its list's last; all its rows have been summed in the stage
-        that the sums are in.
-    node_behind_last, node_behind_rows : In(1), node_ready, node_behind_ready : Out(1)
-    node_stage : Out
-    row_summed_last : In(1)
-        The forces of a list's last row may be read.
-    node_updated_last : In(1)
-        The new state of a list's last node has been written.
+    row, node : In(ListControl)
+        A row waits for nodes updated in the stage that the updates are in, a node for rows summed in the stage that the
+        sums are in.
+    row_stage, node_stage : Out
+        The stage of the entry in the issue register.
+    rows_done, nodes_done : In(1)
+        The forces of a list's last row can be read; the new state of a list's last node has been written.
     node_waits, list_waits, end_waits : Out(1)
-        Why no row goes in this cycle of the run: the one in front waits for its nodes, there is none yet, or the last
-        has gone.
+        Why no row is issued in this cycle of the run: it waits for its nodes, it has not been fetched, or it was the
+        last.
     """
 
     def __init__(self, *, step_bits: int = 32, cycles_per_node: int = 1):
@@ -64,77 +54,63 @@ class Sequencer(wiring.Component):
                 "stop": In(1),
                 "busy": Out(1),
                 "steps_done": Out(step_bits),
-                "row_valid": In(1),
-                "row_goes": In(1),
-                "row_last": In(1),
-                "row_nodes": In(1),
-                "row_behind_nodes": In(1),
-                "row_ready": Out(1),
-                "row_behind_ready": Out(1),
+                "row": In(ListControl()),
+                "node": In(ListControl(next_last=True)),
                 "row_stage": Out(STAGE_BITS),
+                "node_stage": Out(STAGE_BITS),
+                "rows_done": In(1),
+                "nodes_done": In(1),
                 "node_waits": Out(1),
                 "list_waits": Out(1),
                 "end_waits": Out(1),
-                "node_valid": In(1),
-                "node_goes": In(1),
-                "node_last": In(1),
-                "node_rows": In(1),
-                "node_behind_last": In(1),
-                "node_behind_rows": In(1),
-                "node_ready": Out(1),
-                "node_behind_ready": Out(1),
-                "node_stage": Out(STAGE_BITS),
-                "row_summed_last": In(1),
-                "node_updated_last": In(1),
             }
         )
 
     def elaborate(self, platform):
-        m = Module()
+        m, row, node = Module(), self.row, self.node
         last_stage = RK4.stages - 1
-        # What the start of a run sets needs no reset: before it no row and no node goes
-        rows_over, nodes_over = Signal(reset_less=True), Signal(reset_less=True)
+        # What the start of a run sets needs no reset: before it no row and no node is issued
+        rows_over, nodes_over = (Signal(name=f"{name}_over", reset_less=True) for name in ("rows", "nodes"))
         last_step = {name: Signal(name=f"{name}_last_step", reset_less=True) for name in ("row", "node", "update")}
-        row_lead = Signal(2, reset_less=True)  # stages that the front row is ahead of the updates
-        sum_lead = Signal(2, reset_less=True)  # stages that the sums are ahead of the front node
+        row_lead = Signal(2, name="row_lead", reset_less=True)  # stages that the next row is ahead of the updates
+        sum_lead = Signal(2, name="sum_lead", reset_less=True)  # stages that the sums are ahead of the next node
         row_stage, node_stage, update_stage = stages = [
             Signal(STAGE_BITS, name=f"stage_of_{name}", reset_less=True) for name in ("rows", "nodes", "updates")
         ]
         m.d.comb += [self.row_stage.eq(row_stage), self.node_stage.eq(node_stage)]
 
-        # Behind a list's last entry comes its first, of the next stage
-        row_turns, node_turns = self.row_valid & self.row_last, self.node_valid & self.node_last
-        rows_end = rows_over | row_turns & (row_stage == last_stage) & last_step["row"]
-        nodes_end = nodes_over | node_turns & (node_stage == last_stage) & last_step["node"]
-        far = (row_lead == 1) & ~row_turns | (row_lead == 0) & row_turns
-        near = self.node_behind_rows & ~self.node_behind_last
-        node_ready = ~nodes_over & ((sum_lead != 0) | self.node_rows & ~self.node_last)
-        node_behind_ready = ~nodes_end & ((sum_lead > node_turns) | (sum_lead == node_turns) & near)
-        if self._cycles_per_node > 1:  # it has its turns to wait for
-            node_ready, node_behind_ready = node_ready & self._rested(m), Const(0)
+        # After a list's last entry comes its first, of the next stage
+        row_wraps, node_wraps = row.valid & row.last, node.valid & node.last
+        rows_end = rows_over | row_wraps & (row_stage == last_stage) & last_step["row"]
+        nodes_end = nodes_over | node_wraps & (node_stage == last_stage) & last_step["node"]
+        row_one_stage_ahead = (row_lead == 1) & ~row_wraps | (row_lead == 0) & row_wraps
+        next_node_summed = node.next_reached & ~node.next_last
+        node_ready = ~nodes_over & ((sum_lead != 0) | node.reached & ~node.last)
+        node_next_ready = ~nodes_end & ((sum_lead > node_wraps) | (sum_lead == node_wraps) & next_node_summed)
+        if self._cycles_per_node > 1:
+            node_ready, node_next_ready = node_ready & self._rested(m), Const(0)
         m.d.comb += [
-            self.row_ready.eq(~rows_over & ((row_lead == 0) | (row_lead == 1) & self.row_nodes)),
-            self.row_behind_ready.eq(~rows_end & ((row_lead == 0) & ~row_turns | far & self.row_behind_nodes)),
-            self.node_ready.eq(node_ready),
-            self.node_behind_ready.eq(node_behind_ready),
-            self.node_waits.eq(self.busy & ~rows_over & self.row_valid & ~self.row_goes),
-            self.list_waits.eq(self.busy & ~rows_over & ~self.row_valid),
+            row.ready.eq(~rows_over & ((row_lead == 0) | (row_lead == 1) & row.reached)),
+            row.next_ready.eq(~rows_end & ((row_lead == 0) & ~row_wraps | row_one_stage_ahead & row.next_reached)),
+            node.ready.eq(node_ready),
+            node.next_ready.eq(node_next_ready),
+            self.node_waits.eq(self.busy & ~rows_over & row.valid & ~row.issue),
+            self.list_waits.eq(self.busy & ~rows_over & ~row.valid),
             self.end_waits.eq(self.busy & rows_over),
         ]
 
         # The rows' stage goes up with the list's last row, the updates' stage with the list's last node
-        row_stage_done, sum_stage_done = Signal(), self.row_summed_last
-        node_stage_done, update_stage_done = Signal(), self.node_updated_last
-        m.d.comb += [
-            row_stage_done.eq(self.row_goes & self.row_last),
-            node_stage_done.eq(self.node_goes & self.node_last),
-        ]
+        row_stage_done = Signal()
+        node_stage_done = Signal()
+        sum_stage_done, update_stage_done = self.rows_done, self.nodes_done
+        m.d.comb += [row_stage_done.eq(row.issue & row.last), node_stage_done.eq(node.issue & node.last)]
         m.d.sync += [
             row_lead.eq(row_lead + row_stage_done - update_stage_done),
             sum_lead.eq(sum_lead + sum_stage_done - node_stage_done),
         ]
         # While the updates are in a step's first stage, rows and nodes are in the same step, none of them near its end
-        stopping, stops = Signal(), Signal()
+        stopping = Signal()
+        stops = Signal()
         m.d.comb += stops.eq(stopping & (update_stage == 0))
         with m.If(self.stop):
             m.d.sync += stopping.eq(1)
@@ -146,21 +122,22 @@ class Sequencer(wiring.Component):
             ("node", node_stage, node_stage_done),
             ("update", update_stage, update_stage_done),
         ):
-            turn, turned = Signal(name=f"{name}_turn"), Signal(name=f"{name}_turned")
+            step_done = Signal(name=f"{name}_step_done")
+            counted = Signal(name=f"{name}_step_counted")
             left = Signal(len(self.steps), name=f"{name}_steps_left", reset_less=True)
-            m.d.comb += turn.eq(done & (stage == last_stage))
-            m.d.sync += [turned.eq(turn), last_step[name].eq(left == 1)]
+            m.d.comb += step_done.eq(done & (stage == last_stage))
+            m.d.sync += [counted.eq(step_done), last_step[name].eq(left == 1)]
             with m.If(done):
-                m.d.sync += stage.eq(Mux(turn, 0, stage + 1))
-            with m.If(turned):
+                m.d.sync += stage.eq(Mux(step_done, 0, stage + 1))
+            with m.If(counted):
                 m.d.sync += left.eq(left - 1)
             with m.If(stops):
                 m.d.sync += left.eq(1)
             if name == "update":
-                m.d.sync += self.steps_done.eq(self.steps_done + turned)
+                m.d.sync += self.steps_done.eq(self.steps_done + counted)
             with m.If(self.start):
-                m.d.sync += [turned.eq(0), left.eq(self.steps)]
-            with m.If(turn & last_step[name]):
+                m.d.sync += [counted.eq(0), left.eq(self.steps)]
+            with m.If(step_done & last_step[name]):
                 m.d.sync += {"row": rows_over.eq(1), "node": nodes_over.eq(1), "update": self.busy.eq(0)}[name]
 
         with m.If(self.start):
@@ -169,9 +146,9 @@ class Sequencer(wiring.Component):
         return m
 
     def _rested(self, m):
-        """Whether a node that is ready now goes when the one before has had its turns."""
-        rest = Signal(range(self._cycles_per_node))
-        with m.If(self.node_goes):
+        """1 if a node that is ready now is issued when the one before has had its cycles."""
+        rest = Signal(range(self._cycles_per_node), name="rest")
+        with m.If(self.node.issue):
             m.d.sync += rest.eq(self._cycles_per_node - 2)
         with m.Elif(rest != 0):
             m.d.sync += rest.eq(rest - 1)

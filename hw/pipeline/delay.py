@@ -1,6 +1,6 @@
 """Delay lines: a value some cycles later."""
 
-from amaranth.hdl import Const, Module, Signal, Value
+from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -32,7 +32,8 @@ class Ring(wiring.Component):
         m = Module()
         depth = self._cycles - 1  # and the register behind it
         m.submodules.words = words = memory.Memory(shape=len(self.i), depth=depth, init=())
-        write, read = words.write_port(), words.read_port(domain="comb")
+        write = words.write_port()
+        read = words.read_port(domain="comb")
         place = Signal(range(depth), reset_less=True)
         word = Signal(len(self.i), reset_less=True)
         m.d.sync += [place.eq(place + 1), word.eq(read.data)]
@@ -49,10 +50,14 @@ class Ring(wiring.Component):
 
 
 class DelayLines:
-    """Delay lines in a module, each shared by all who read it; `build` makes them, when all have asked."""
+    """Delay lines in a module, each shared by all who read it; `build` makes them, when all have asked.
 
-    def __init__(self, m: Module):
-        self._m, self._lines = m, {}
+    ``reset`` clears what is to be 0 after a reset, in a module that has a reset of its own; otherwise the clock
+    domain's does.
+    """
+
+    def __init__(self, m: Module, reset: Value | None = None):
+        self._m, self._reset, self._lines = m, reset, {}
 
     def later(self, value: Value, cycles: int, *, name: str = "", reset: bool = False, wire: bool = False) -> Value:
         """``value`` so many cycles later.
@@ -66,7 +71,14 @@ class DelayLines:
         wire : bool
             Whether the value comes from logic, not from a register: then a register takes it before any ring does, for
             the way to a memory is long.
+
+        Raises
+        ------
+        ValueError
+            If the value is to be had before it comes.
         """
+        if cycles < 0:
+            raise ValueError(f"a value must be delayed by at least 0 cycles, not {cycles}")
         if not cycles or isinstance(value, Const):
             return value
         name = name or value.name
@@ -74,7 +86,9 @@ class DelayLines:
         if wire and cycles > 1:
             self.later(value, 1, name=name, reset=reset)
         if cycles not in taps:
-            taps[cycles] = Signal(value.shape(), name=f"{name}_d{cycles}", reset_less=not reset)
+            taps[cycles] = Signal(
+                value.shape(), name=f"{name}_d{cycles}", reset_less=not reset or self._reset is not None
+            )
         return taps[cycles]
 
     def build(self):
@@ -93,7 +107,7 @@ class DelayLines:
             past += stride
             stop = tap if past == cycles else Signal.like(tap, name=f"{name}_d{past}")
             if stride == 1:
-                self._m.d.sync += stop.eq(value)
+                self._m.d.sync += stop.eq(Mux(self._reset, 0, value) if reset and self._reset is not None else value)
             else:
                 self._m.submodules[f"{name}_ring{past}"] = ring = Ring(width=len(tap), cycles=stride)
                 self._m.d.comb += [ring.i.eq(value), stop.eq(ring.o)]

@@ -2,7 +2,7 @@
 
 import itertools
 
-from amaranth.hdl import Cat, Const, Module, Signal, Value
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
 from golden.numbers.graph import Node
 from hw.blocks.gather import Gather
@@ -31,16 +31,19 @@ class Pipe:
     tables : dict of str to callable
         ``tables[name](address values)`` gives a table's word ``schedule.cost.read`` cycles later.
 
+    reset : Value
+        Clears what is valid and the faults, instead of the clock domain's reset.
+
     Attributes
     ----------
     faults : dict of str to Value
         1 `FAULT_LATENCY` cycles after a fault of that name has happened.
     """
 
-    def __init__(self, m: Module, schedule: Schedule, inputs, valid, tables=None):
+    def __init__(self, m: Module, schedule: Schedule, inputs, valid, tables=None, reset=None):
         self._m, self._schedule, self._inputs, self._tables = m, schedule, inputs, tables or {}
-        self._delays, self._results = DelayLines(m), {}
-        self._valid = valid
+        self._delays, self._results = DelayLines(m, reset), {}
+        self._valid, self._reset = valid, reset
         self._faults: dict[str, list] = {}
         # The terms of a sum come from all over the device, and it has more to do in its cycle than others
         sums = [node for node in schedule.graph.nodes if node.kind == "sum"]
@@ -157,8 +160,10 @@ class Pipe:
     def _report(self, name, bit, cycle):
         reports = self._faults.setdefault(name, [])
         if not never(bit):
-            reports.append(Signal(name=f"{name.replace(' ', '_')}_reported_{len(reports)}"))
-            self._m.d.sync += reports[-1].eq(bit & self.valid(cycle))
+            label, local = f"{name.replace(' ', '_')}_reported_{len(reports)}", self._reset is not None
+            reports.append(Signal(name=label, reset_less=local))
+            fault = bit & self.valid(cycle)
+            self._m.d.sync += reports[-1].eq(Mux(self._reset, 0, fault) if local else fault)
 
 
 class _Wires:

@@ -26,8 +26,8 @@ extern "C" {
 Bench *bench_new() {
     auto *b = new Bench;
     b->top.valid = 0;
-    b->top.rst = 1; b->edge(); b->edge();
-    b->top.rst = 0; b->edge();
+    b->top.reset = 1; b->edge(); b->edge();
+    b->top.reset = 0; b->edge();
     return b;
 }
 
@@ -53,7 +53,7 @@ void bench_run(Bench *b, int velocity_shift, long cycles, const int64_t *entry, 
                int64_t *results, uint32_t *faults) {
     auto &top = b->top;
     const auto row = [&](long cycle) { return cycle < 0 ? -1 : entry[cycle]; };
-    top.velocity_shift = velocity_shift & 0xFF;
+    top.inputs___05Fvelocity_shift = velocity_shift & 0xFF;
     for (long cycle = 0; cycle < cycles; ++cycle) {
         top.valid = entry[cycle] >= 0;
         const int64_t *vector;

@@ -45,7 +45,7 @@ class EdgeBench:
         text = convert(EdgeProcessor(datapath), TOP)
         folder.mkdir(parents=True, exist_ok=True)
         shim = folder / f"{TOP}_bench.cpp"
-        shim.write_text(_ports("INPUT", inputs) + _ports("OUTPUT", outputs) + SHIM.read_text())
+        shim.write_text(_ports("INPUT", "inputs", inputs) + _ports("OUTPUT", "outputs", outputs) + SHIM.read_text())
         shared = opened(library(TOP, text, shim, folder=folder))
         self._shared = shared
         shared.bench_new.restype = ctypes.c_void_p
@@ -94,6 +94,7 @@ class EdgeBench:
         return results, faults
 
 
-def _ports(kind: str, ports: dict[str, tuple[int, int]]) -> str:
-    listed = " ".join(f"X({name}, {bits}, {cycle})" for name, (bits, cycle) in ports.items())
+def _ports(kind: str, interface: str, ports: dict[str, tuple[int, int]]) -> str:
+    """Return the list that the shim wants; Verilator writes ``___05F`` for the ``__`` after an interface's name."""
+    listed = " ".join(f"X({interface}___05F{name}, {bits}, {cycle})" for name, (bits, cycle) in ports.items())
     return f"#define {kind}S(X) {listed}\nenum {{ {kind}_COUNT = {len(ports)} }};\n"

@@ -4,7 +4,8 @@ from amaranth.hdl import Cat, ClockDomain, ClockSignal, Module, ResetSignal, Sig
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from hw.emit.verilog import TOP, Placed, convert, emit
+from hw.blocks.placed import Placed
+from hw.emit.verilog import TOP, convert, emit
 from hw.machine.core import Core
 from hw.parameters import Parameters
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ctypes
 from pathlib import Path
 
+from hw.emit.linked import LINKED, linked
 from hw.emit.verilog import LANE
-from hw.link.top import LINKED, linked
 from hw.parameters import Parameters
 from sim.backends.verilated import library, opened
 

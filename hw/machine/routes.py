@@ -1,0 +1,25 @@
+"""Registers on long routes. Each constant is the length of a delay line: with another one the circuit computes the same
+integers, in more or fewer cycles, or refuses to be made."""
+
+from hw.blocks.memory import READ_LATENCY
+
+HANDOVER = 3
+"""Registers from the host port to the ports of a memory, with that at the ports: a run starts so much later."""
+
+CHOICE = 2
+"""Cycles to choose a word from a memory's, then one from the lanes', then one from the regions'."""
+
+COPIED = 1
+"""Registers from a node's new state to its copies in the lanes."""
+
+STAGED = 1
+"""Registers from the issue of a row to the stage bits on the lanes' ports."""
+
+PORT = 1
+"""Registers at a memory's ports (`hw.machine.memory_ports`): the last of the route to it."""
+
+FOUND = HANDOVER + READ_LATENCY
+"""Cycles from the host's index at a lane or an updater to the word that its memories hold there."""
+
+MEMORY = 1 + FOUND
+"""Cycles from an access of the host port to its word; the 1 is the register of `hw.machine.access`."""
