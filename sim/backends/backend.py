@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from golden.datapath.image import Image
-from sim.backends.machine import Machine
+from golden.physics.scene import Scene
+from sim.backends.machine import FloatMachine, Machine
 from sim.backends.witness import Witness
 from sim.encode.encode import EncodedScene
 
@@ -35,10 +36,6 @@ class Option:
 @dataclass(frozen=True)
 class Backend(ABC):
     """One way to compute a scene. The fields of an instance are its settings.
-
-    A backend also has ``open(...)``, a context manager that gives the machine: a `sim.backends.machine.Machine` for an
-    `sim.encode.encode.EncodedScene` where it computes ``integers`` (`IntegerBackend`), else a
-    `sim.backends.machine.FloatMachine` for a scene.
 
     Attributes
     ----------
@@ -75,16 +72,20 @@ class Backend(ABC):
     def check(self) -> None:  # noqa: B027
         """Raise `InputError` for settings that can't be used, before anything is run or written."""
 
+    @abstractmethod
+    def open(self, scene: Scene | EncodedScene) -> AbstractContextManager[FloatMachine | Machine]:
+        """Return a context manager that gives a machine at the scene's start and closes it.
+
+        A backend that computes ``integers`` gets the encoded scene and gives a `sim.backends.machine.Machine`; the
+        others get the scene itself and give a `sim.backends.machine.FloatMachine`.
+        """
+
 
 @dataclass(frozen=True)
 class IntegerBackend(Backend):
     """A backend that computes in the circuit's integers."""
 
     integers = True
-
-    @abstractmethod
-    def open(self, encoded: EncodedScene) -> AbstractContextManager[Machine]:
-        """Return a context manager that gives a machine at the scene's start and closes it."""
 
     def check_room(self, encoded: EncodedScene) -> None:
         """Raise `InputError` for a scene that is too large."""
