@@ -25,9 +25,9 @@ def encode(scene: Scene, edge_order: np.ndarray | None = None) -> EncodedScene:
         raise
     except (ValueError, OverflowError) as error:
         raise InputError(f"the scene must have numbers that the circuit can hold: {error}") from None
-    for held in (encoded, *later_materials(encoded)):
-        record = records.material(held.image.formats, len(held.image.damper["rho_value"]))
-        for material, fields in zip(held.scene.materials, held.image.materials, strict=True):
+    for variant in (encoded, *later_materials(encoded)):
+        record = records.material(variant.image.formats, len(variant.image.damper["rho_value"]))
+        for material, fields in zip(variant.scene.materials, variant.image.materials, strict=True):
             _check(record, fields, f"materials.{material.name} must have coefficients")
     return encoded
 

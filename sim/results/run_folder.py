@@ -76,16 +76,16 @@ def load(folder) -> tuple[Scene, dict, Trajectory]:
     for name in (SUMMARY, SCENE, TRAJECTORY):
         if not (folder / name).is_file():
             raise InputError(f"RUN must be a folder that `python -m sim run` left, not {folder}: it has no {name}")
-    said = _read(folder / SUMMARY, lambda path: dict(json.loads(path.read_text(encoding="utf-8"))))
+    entry = _read(folder / SUMMARY, lambda path: dict(json.loads(path.read_text(encoding="utf-8"))))
     scene = _read(folder / SCENE, archive.load)
     frames = _read(folder / TRAJECTORY, trajectory.load)
     same = np.array_equal(frames.edges, scene.mesh.edges) and np.array_equal(frames.t, scene.frames * scene.dt)
-    if not same or said.get("scene") != scene.name:
+    if not same or entry.get("scene") != scene.name:
         raise InputError(
             f"RUN must be a folder with the files of one run, not {folder}: "
             f"{SCENE}, {TRAJECTORY} and {SUMMARY} differ in what they are of"
         )
-    return scene, said, frames
+    return scene, entry, frames
 
 
 def load_result(folder) -> tuple[Scene, Result]:
@@ -93,16 +93,18 @@ def load_result(folder) -> tuple[Scene, Result]:
 
     Raises `InputError` as `load`, and for files that no run can have left.
     """
-    scene, said, frames = load(folder)
-    backend = said.get("backend")
+    scene, entry, frames = load(folder)
+    backend = entry.get("backend")
     if backend not in BACKENDS:
         raise _broken(folder, f"its backend is {backend!r}")
     expected = {"seconds": int | float, "faults": dict} | dict.fromkeys(COUNTED, int | None)
     for name, kind in expected.items():
-        if not isinstance(said.get(name), kind):
+        if not isinstance(entry.get(name), kind):
             raise _broken(folder, f"{SUMMARY} has no {name} that could be one")
     _check_frames(scene, frames, folder)
-    result = Result(backend, frames, said["seconds"], faults=said["faults"], **{name: said[name] for name in COUNTED})
+    result = Result(
+        backend, frames, entry["seconds"], faults=entry["faults"], **{name: entry[name] for name in COUNTED}
+    )
     if not BACKENDS[backend].integers:
         return scene, result
     encoded = limits.encode(scene)
