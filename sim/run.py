@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from pathlib import Path
 from time import perf_counter
 
@@ -74,8 +74,7 @@ def run(
     if not isinstance(backend, Backend):
         backend = _configured(backend, lanes=lanes, updates=updates, engine=engine, waves=waves, link=link)
     with ExitStack() as stack:
-        if link is not None:
-            stack.callback(link.close)
+        backend = stack.enter_context(closing(backend.connect()))
         backend.check()
         _check_order(edge_order, len(scene.mesh.edges))
         began = perf_counter()

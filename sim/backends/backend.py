@@ -72,9 +72,16 @@ class Backend(ABC):
     def check(self) -> None:  # noqa: B027
         """Raise `InputError` for settings that can't be used, before anything is run or written."""
 
+    def connect(self) -> Backend:
+        """Return the backend with its device reached, if it has one. Raises `InputError` if that can't be reached."""
+        return self
+
+    def close(self) -> None:  # noqa: B027
+        """Let go of the device."""
+
     @abstractmethod
     def open(self, scene: Scene | EncodedScene) -> AbstractContextManager[FloatMachine | Machine]:
-        """Return a context manager that gives a machine at the scene's start and closes it.
+        """Return a context manager that gives a machine at the scene's start, once connected.
 
         A backend that computes ``integers`` gets the encoded scene and gives a `sim.backends.machine.Machine`; the
         others get the scene itself and give a `sim.backends.machine.FloatMachine`.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,18 +48,25 @@ class BoardBackend(IntegerBackend):
         if self.link is None and self.port is None:
             raise InputError(f"link must be given for the backend {self.name}")
 
-    @contextmanager
-    def open(self, encoded: EncodedScene) -> Iterator[ClockedMachine]:
-        """Give the circuit, loaded and verified; its link is closed in the end."""
-        from sim.backends.circuit import CircuitMachine
+    def connect(self) -> BoardBackend:
+        """Return the backend with a link to the circuit at its port, unless it has one."""
         from sim.backends.link.board import BAUD, Board
 
-        link = self.link or Board.at(self.port, self.baud or BAUD)
+        self.check()
+        return self if self.link else replace(self, link=Board.at(self.port, self.baud or BAUD))
+
+    def close(self) -> None:
+        """Close the link."""
+        if self.link:
+            self.link.close()
+
+    @contextmanager
+    def open(self, encoded: EncodedScene) -> Iterator[ClockedMachine]:
+        """Give the circuit, loaded and verified."""
+        from sim.backends.circuit import CircuitMachine
+
         try:
-            try:
-                check_room(encoded, link.parameters)
-            except InputError as error:
-                raise InputError(f"{error}: choose a smaller object, or build a circuit that holds it") from None
-            yield CircuitMachine(encoded.image, link, verify=link.verify)
-        finally:
-            link.close()
+            check_room(encoded, self.link.parameters)
+        except InputError as error:
+            raise InputError(f"{error}: choose a smaller object, or build a circuit that holds it") from None
+        yield CircuitMachine(encoded.image, self.link, verify=self.link.verify)

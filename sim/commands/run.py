@@ -58,6 +58,7 @@ def run(args: Namespace) -> int:
     out = folder.claim(args.out, args.force)
     for suffix in waves.FORMATS:  # of an earlier run
         (out / f"waves.{suffix}").unlink(missing_ok=True)
+    backend = backend.connect()
     with about(scene), terminal.run_bar(scene, backend.name) as report_progress:
         result = run(scene, backend, progress=report_progress)
     run_folder.save(scene, result, out)
