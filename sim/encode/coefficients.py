@@ -13,7 +13,7 @@ from sim.encode.units import Units
 
 
 def coefficient(x: float, formats: Formats) -> tuple[int, int]:
-    """``(raw mantissa, shift)`` of ``x = mantissa * 2**-shift`` with the mantissa in [1/2, 1)."""
+    """Return ``(raw mantissa, shift)`` of ``x = mantissa * 2**-shift`` with the mantissa in [1/2, 1)."""
     mantissa, exponent = np.frexp(x)
     raw = int(np.floor(np.ldexp(mantissa, formats.mantissa.frac_bits) + 0.5))
     if raw > formats.mantissa.raw_max:
@@ -24,7 +24,7 @@ def coefficient(x: float, formats: Formats) -> tuple[int, int]:
 def coefficients(
     material: Material, number: int, units: Units, formats: Formats, table: int
 ) -> tuple[dict[str, int], DamperTable | None]:
-    """The record of material ``number`` of the scene, and its damper table unless the damper is linear.
+    """Return the record of material ``number`` of the scene, and its damper table unless the damper is linear.
 
     Raises
     ------

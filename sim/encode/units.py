@@ -1,4 +1,4 @@
-"""From SI to the circuit's units, and back.
+"""The circuit's units in SI, chosen for a scene.
 
 A *size* is the object's size S and a *step* the time step h. Velocity, force and each material's trial force have a
 full scale of their own, all powers of two, chosen for the scene: small enough that no bit is wasted on small time
@@ -50,7 +50,7 @@ class Units:
 
 
 def choose(scene: Scene, formats: Formats) -> Units:
-    """Units that fit the scene's drives, loads, stiffnesses and masses with `HEADROOM`, those of its start."""
+    """Return units that fit the scene's drives, loads, stiffnesses and masses with `HEADROOM`, at its start."""
     points = scene.mesh.points
     centre = (points.min(axis=0) + points.max(axis=0)) / 2
     fastest = expected_speed(scene) * HEADROOM
@@ -68,38 +68,39 @@ def choose(scene: Scene, formats: Formats) -> Units:
 
 
 def trials_of(scene: Scene, materials: tuple[Material, ...], velocity: float) -> tuple[float, ...]:
-    """`Units.trial` for these materials."""
+    """Return `Units.trial` for these materials."""
     return tuple(full_scale(expected_trial(scene, m, velocity)) for m in materials)
 
 
 def expected_speed(scene: Scene) -> float:
-    """An estimate of the largest speed (m/s): of the drives, of a fall through the object's size, of the recoil from
-    the strain that drives and loads can cause."""
+    """Return an estimate of the largest speed (m/s): of the drives, of a fall through the object's size, of the recoil
+    from the strain that drives and loads can cause."""
     driven = [np.linalg.norm(p.velocity, axis=1).max(initial=0.0) for p in scene.phases]
-    way = sum(speed * p.steps * scene.dt for speed, p in zip(driven, scene.phases, strict=True))
+    travel = sum(speed * p.steps * scene.dt for speed, p in zip(driven, scene.phases, strict=True))
     stiffest = max(m.k for materials in scene.material_sets for m in materials)
-    recoil = min(way / scene.size, 1.0) * longest(scene) * np.sqrt(stiffest / scene.mass.min())
+    recoil = min(travel / scene.size, 1.0) * longest(scene) * np.sqrt(stiffest / scene.mass.min())
     fall = np.sqrt(2 * np.linalg.norm(scene.gravity) * scene.size)
     pushed = max(np.linalg.norm(p.load, axis=1).max() / scene.mass.min() * scene.dt for p in scene.phases)
     return float(max(*driven, recoil, fall, pushed))
 
 
 def expected_trial(scene: Scene, material: Material, velocity: float) -> float:
-    """The trial force (N) of the longest edge, stretched by half and changing at half of the velocity full scale."""
+    """Return the trial force (N) of the longest edge, stretched by half, at half of the velocity full scale."""
     return material.k * longest(scene) / 2 + material.c1 * velocity / 2
 
 
 def longest(scene: Scene) -> float:
+    """Return the length of the longest edge (m)."""
     i, j = scene.mesh.edges.T
     return float(np.linalg.norm(scene.mesh.points[j] - scene.mesh.points[i], axis=1).max())
 
 
 def largest_share(material: Material) -> float:
-    """The largest rho: the share of the trial force that an edge really carries."""
+    """Return the largest rho: the part of the trial force that an edge carries."""
     rho, _ = material.rho_sigma(0.0)
     return float(rho)
 
 
 def full_scale(x: float) -> float:
-    """The power of two that holds x."""
+    """Return the smallest power of two that is at least x."""
     return 2.0 ** ceil(log2(x)) if x > 0 else 1.0

@@ -12,7 +12,7 @@ from golden.physics.trajectory import Trajectory
 
 
 def edge_forces(scene: Scene, run: Trajectory) -> np.ndarray:
-    """(F, E) N: positive where an edge pushes its ends apart, as when it is compressed."""
+    """Return (F, E) the edges' forces (N), positive where an edge pushes its ends apart, as under compression."""
     model, forces = Model(scene), np.empty(run.a.shape)
     for phase, frames in _frames(scene):
         _enter(model, phase, run, frames[0])
@@ -22,13 +22,15 @@ def edge_forces(scene: Scene, run: Trajectory) -> np.ndarray:
 
 
 def energies(scene: Scene, run: Trajectory) -> dict[str, np.ndarray]:
-    """(F,) J each: ``kinetic``, ``elastic`` (of the springs, k (a l - L)^2 / 2) and ``gravity`` (0 at the start) are
-    in the object; ``work`` is what driving devices and loads have put in since it was at rest, before frame 0 has its
-    driven nodes move; ``dissipated`` is the rest.
+    """Return the energies of an object, (F,) J each.
 
-    The work of a load is exact. That of a device is a sum over the frames (trapezoids): it is as good as the
-    force between two frames is straight. Materials that a phase brings keep the forces, not the elastic energy: what
-    that gains or loses so is in ``dissipated``.
+    ``kinetic``, ``elastic`` (of the springs, k (a l - L)^2 / 2) and ``gravity`` (0 at the start) are in the object.
+    ``work`` is put in by driving devices and loads since the object was at rest, before frame 0, at which driven nodes
+    move already. ``dissipated`` is the rest.
+
+    The work of a load is exact. The work of a device is a sum over the frames (trapezoids), exact where the force is
+    linear between two frames. Materials that a phase brings keep the forces, not the elastic energy: the difference is
+    in ``dissipated``.
     """
     model = Model(scene)
     voigt = run.a * np.linalg.norm(run.x[:, model.j] - run.x[:, model.i], axis=2)
@@ -42,7 +44,7 @@ def energies(scene: Scene, run: Trajectory) -> dict[str, np.ndarray]:
         _enter(model, phase, run, frames[0])
         result["elastic"][frames[1:]] = (voigt[frames[1:]] - model.L) ** 2 @ model.k / 2
         steady = phase.load * (run.x[frames] - run.x[frames[0]])
-        gained, power = _begun(model, phase, run, frames)
+        gained, power = _begin(model, phase, run, frames)
         pressed = np.diff(run.t[frames]) * (power[1:] + power[:-1]) / 2
         work[frames[1:]] = work[frames[0]] + gained + steady.sum(axis=(1, 2))[1:] + np.cumsum(pressed)
     inside = sum(result.values())
@@ -50,7 +52,7 @@ def energies(scene: Scene, run: Trajectory) -> dict[str, np.ndarray]:
 
 
 def _frames(scene: Scene) -> Iterator[tuple[Phase, np.ndarray]]:
-    """Each phase and its frames, from the one that it starts from to the one that it ends with."""
+    """Yield each phase with its frames, from the one that it starts at to the one that it ends at."""
     start = 0
     for phase in scene.phases:
         end = start + phase.steps
@@ -65,8 +67,8 @@ def _enter(model: Model, phase: Phase, run: Trajectory, frame: int) -> None:
         model.become(phase.materials)
 
 
-def _begun(model: Model, phase: Phase, run: Trajectory, frames) -> tuple[float, np.ndarray]:
-    """The kinetic energy that a phase's constraints put in when it begins, and their power (W) at its frames."""
+def _begin(model: Model, phase: Phase, run: Trajectory, frames) -> tuple[float, np.ndarray]:
+    """Return the kinetic energy that a phase's constraints put in when it begins, and their power (W) at its frames."""
     power = np.zeros(len(frames))
     for n, frame in enumerate(frames):
         _put(model, run, frame)
