@@ -87,7 +87,7 @@ class EdgeModel:
 
     def faults(self):
         """(the graph's operation, name of the fault, mask) for each operation that reported one."""
-        rounding = [node for node in self._graph.nodes if node.kind in ("round", "shift_right") and node.fmt.name]
+        rounding = [node for node in self._graph.operations if node.kind in ("round", "shift_right") and node.fmt.name]
         yield from self._matched([(node.fmt.name, node) for node in rounding], self._watch.rounded)
         yield from self._matched(self._graph.faults, self._watch.flagged)
 

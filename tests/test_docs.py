@@ -126,7 +126,7 @@ def figures_of_the_method():
 
 def figures_of_the_circuit():
     edge, node = (
-        [n for n in datapath.graph.nodes if n.kind == "mul" and not PARAMETERS.cost.narrow_product(n)]
+        [n for n in datapath.graph.operations if n.kind == "mul" and not PARAMETERS.cost.narrow_product(n)]
         for datapath in datapaths(PARAMETERS)
     )
     cycles = {what: number for _, what, number in latencies(PARAMETERS)}

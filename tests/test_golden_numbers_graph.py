@@ -46,7 +46,7 @@ virtual void wait wait_order wand weak weak0 weak1 while wildcard wire with with
 def evaluate(graph: Graph, inputs: dict[str, QArray], contents: dict, faults: Counter) -> dict:
     """Node -> number; every operation with `QArray`, which must give the format that the node says."""
     numbers = {}
-    for n in graph.nodes:
+    for n in graph.operations:
         numbers[n] = apply(n, [numbers[operand] for operand in n.operands], inputs, contents, faults)
         if n.kind != "read":
             assert numbers[n].fmt == n.fmt, n.name
@@ -154,7 +154,7 @@ GRAPHS = {
 
 @pytest.mark.parametrize("name", GRAPHS)
 def test_every_name_is_a_different_legal_identifier(name):
-    names = [n.name for n in GRAPHS[name].nodes]
+    names = [n.name for n in GRAPHS[name].operations]
     assert len(set(names)) == len(names)
     assert all(re.fullmatch("[a-z][a-z0-9_]*", word) for word in names)
     assert not set(names) & set(KEYWORDS)
@@ -164,16 +164,16 @@ def test_every_name_is_a_different_legal_identifier(name):
 def test_operands_come_first_and_nothing_is_without_use(name):
     graph = GRAPHS[name]
     seen = set()
-    for n in graph.nodes:
+    for n in graph.operations:
         assert seen.issuperset(n.operands), n.name
         seen.add(n)
-    used = {operand for n in graph.nodes for operand in n.operands}
+    used = {operand for n in graph.operations for operand in n.operands}
     used |= {*graph.outputs.values(), *graph.inputs.values(), *(bit for _, bit in graph.faults)}
     assert used == seen
 
 
 def test_an_edge_takes_as_many_multipliers_as_the_design_says():
-    products = [[x.fmt for x in node.operands] for node in GRAPHS["edge"].nodes if node.kind == "mul"]
+    products = [[x.fmt for x in node.operands] for node in GRAPHS["edge"].operations if node.kind == "mul"]
     wide = [product for product in products if min(q.width for q in product) > Cost().narrow]
     assert len(wide) <= 24  # of 18 bits: what one lane may take of an ECP5
     assert all(q.width <= Formats().operand for product in products for q in product)
@@ -184,16 +184,16 @@ def test_what_outputs_do_not_need_is_dropped():
     x = graph.input("x", Q(4, 0))
     doubled, unused, small = x + x, x * x, x < 3
     small.fault("x is small")
-    graph.finish({"y": doubled, "z": unused, "x": doubled - 1, "small": small}, ["y"])
-    assert [n.kind for n in graph.nodes] == ["input", "add", "const", "less"]
+    graph.name_and_prune({"y": doubled, "z": unused, "x": doubled - 1, "small": small}, ["y"])
+    assert [n.kind for n in graph.operations] == ["input", "add", "const", "less"]
     assert graph.outputs == {"y": doubled} and doubled.name == "y"
 
 
 def test_a_variable_that_is_called_like_an_input_is_its_next_value():
     graph = Graph()
     x = graph.input("x", Q(4, 0))
-    graph.finish({"x": x + 1}, ["x"])
-    assert [n.name for n in graph.nodes] == ["x", "x_next_const", "x_next"]
+    graph.name_and_prune({"x": x + 1}, ["x"])
+    assert [n.name for n in graph.operations] == ["x", "x_next_const", "x_next"]
     assert graph.outputs["x"].name == "x_next"
 
 

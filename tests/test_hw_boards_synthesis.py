@@ -43,7 +43,7 @@ def synthesised(parameters: Parameters, options: str) -> tuple[Counter, Counter,
         Counter(json.loads((FOLDER / name).read_text())["design"]["num_cells_by_type"])
         for name in ("placed.json", "cells.json")
     )
-    products = (node for node in datapath.graph.nodes if node.kind == "mul")
+    products = (node for node in datapath.graph.operations if node.kind == "mul")
     return cells, placed, [node for node in products if not parameters.cost.narrow_product(node)]
 
 

@@ -186,7 +186,7 @@ def test_a_lane_has_as_many_multipliers_as_a_dsp_block_each():
     """The multipliers that synthesis makes of them are counted in test_hw_boards_synthesis.py."""
     lane, _, core = modules(SMALL)
     placed = re.findall(rf"^  {LANE}_multiplier_[su](\d+)_[su](\d+)(?:_apart)? \w+ \($", lane, re.MULTILINE)
-    products = [node for node in core.datapath.graph.nodes if node.kind == "mul"]
+    products = [node for node in core.datapath.graph.operations if node.kind == "mul"]
     assert len(placed) == sum(not SMALL.cost.narrow_product(node) for node in products) <= 24
     assert all(int(a) <= 18 and int(b) <= 18 for a, b in placed)
     products = re.findall(r"^  assign \w+ = .* \* .*;$", lane, re.MULTILINE)

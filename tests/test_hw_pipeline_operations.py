@@ -8,7 +8,7 @@ from hw_objects import Piped, stream
 from integer_objects import random_raw
 
 from golden.numbers.block import normalise
-from golden.numbers.graph import Graph, Node
+from golden.numbers.graph import Graph, Operation
 from golden.numbers.qarray import QArray
 from golden.numbers.qformat import BIT, Q, unsigned
 from hw.pipeline.cost import Cost
@@ -119,8 +119,8 @@ def graph_of(operation, formats) -> Graph:
     graph = Graph()
     inputs = [graph.input(f"in{number}", q) for number, q in enumerate(formats)]
     outputs = operation(*inputs)
-    graph.finish(outputs, list(outputs))
-    assert all(isinstance(node, Node) for node in graph.outputs.values())
+    graph.name_and_prune(outputs, list(outputs))
+    assert all(isinstance(x, Operation) for x in graph.outputs.values())
     return graph
 
 
@@ -184,7 +184,7 @@ def test_rounding_and_shifting_exhaustively_at_small_widths(source, target):
 
     graph = Graph()
     a, b = graph.input("a", source), graph.input("b", count)
-    graph.finish(all_of(a, b), list(expected))
+    graph.name_and_prune(all_of(a, b), list(expected))
     dut = Piped(graph, Cost())
     got = stream(dut, {"a": raw, "b": shift}, list(expected))
     for label, number in expected.items():

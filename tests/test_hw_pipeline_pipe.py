@@ -8,15 +8,17 @@ import pytest
 from datapath_calls import call_edge
 from hw_objects import refused, simulate
 from integer_objects import random_raw, random_record
+from renaming import local_names, renamed
 from test_golden_numbers_graph import apply
 
-from golden.datapath import records
+from golden.datapath import edge, graphs, records
 from golden.datapath.formats import Formats
 from golden.datapath.rk4 import RK4
 from golden.datapath.tables import Tables, inverse_table
 from golden.numbers.graph import AXES, Graph, flatten
 from golden.numbers.qarray import QArray
 from golden.numbers.qformat import Q, unsigned
+from hw.emit.verilog import convert
 from hw.machine.edge import EdgeDatapath, EdgeProcessor
 from hw.machine.interfaces import named
 from hw.pipeline.cost import Cost
@@ -69,7 +71,7 @@ def expected(datapath: EdgeDatapath, values, damper, monkeypatch):
                 (datapath.schedule.cycle[at], name, np.flatnonzero(np.broadcast_to(bit.raw, len(values["i_x_x"]))))
             ),
         )
-        for node in graph.nodes:
+        for node in graph.operations:
             at = node
             numbers[node] = apply(node, [numbers[operand] for operand in node.operands], inputs, contents, faults)
         for name, at in graph.faults:
@@ -157,7 +159,7 @@ def test_no_operation_starts_before_its_operands_are_there(name):
     there = dict(schedule.cycle)
     for label, cycle in schedule.arrival.items():
         there[schedule.graph.inputs[label]] = cycle
-    for node in schedule.graph.nodes:  # wires are there with what they are wires of
+    for node in schedule.graph.operations:  # wires are there with what they are wires of
         if node.kind in WIRES:
             there[node] = there[node.operands[0]]
     for node, start in schedule.start.items():
@@ -170,7 +172,7 @@ def test_a_late_input_comes_exactly_when_it_is_needed_first(name):
     schedule = SCHEDULES[name]
     for label, cycle in schedule.arrival.items():
         reading = {schedule.graph.inputs[label]}
-        reading |= {n for n in schedule.graph.nodes if n.kind in WIRES and n.operands[0] in reading}
+        reading |= {n for n in schedule.graph.operations if n.kind in WIRES and n.operands[0] in reading}
         starts = [start for node, start in schedule.start.items() if reading & set(node.operands)]
         assert cycle == min(starts), label
 
@@ -181,8 +183,39 @@ def test_latencies_add_up(name):
     assert schedule.latency == max(schedule.cycle[node] for node in schedule.graph.outputs.values())
     assert len({schedule.cycle[schedule.graph.outputs[f"pull_{axis}"]] for axis in AXES}) == 1
     stages = schedule.stages()
-    assert [stage[:2] for stage in stages] == [(n.name, n.kind) for n in schedule.graph.nodes if n in schedule.start]
+    assert [stage[:2] for stage in stages] == [
+        (n.name, n.kind) for n in schedule.graph.operations if n in schedule.start
+    ]
     assert all(0 <= start <= end <= schedule.latency for _, _, start, end in stages)
+
+
+def test_the_verilog_does_not_depend_on_names_of_variables_in_the_equations(monkeypatch):
+    def made():
+        datapath = EdgeDatapath(Formats(), TABLES, Cost())
+        return datapath.schedule.stages(), convert(EdgeProcessor(datapath), "edge_processor")
+
+    stages, text = made()
+    names = local_names(edge)
+    assert "stretch" in names
+    monkeypatch.setattr(graphs, "edge", renamed(edge, {name: f"renamed_{name}" for name in names})["edge"])
+    assert made() == (stages, text)
+
+
+def test_a_quantity_has_its_extra_register_whatever_its_axis():
+    plain, extra = (
+        EdgeDatapath(Formats(), TABLES, Cost(extra_register_after=names)).schedule for names in ((), ("dashpot", "w"))
+    )
+    for schedule, registers in ((plain, 0), (extra, 1)):
+        for x in schedule.graph.operations:
+            if x.quantity in ("dashpot", "w"):
+                assert schedule.cost.of(x) == Cost().shift_right * (x.quantity == "dashpot") + registers
+
+
+def test_a_misspelt_quantity_is_refused():
+    refused(
+        lambda: Cost(extra_register_after=("strech",)),
+        "extra_register_after must name quantities of golden.datapath.quantities, not 'strech'",
+    )
 
 
 def test_a_schedule_by_hand():
@@ -191,7 +224,7 @@ def test_a_schedule_by_hand():
     product = x * y
     total = product + x  # x waits for the product
     result = total - (late + fixed)
-    graph.finish({"product": product, "total": total, "result": result}, ["product", "result"])
+    graph.name_and_prune({"product": product, "total": total, "result": result}, ["product", "result"])
     schedule = Schedule(graph, Cost(add=1, sub=2, mul=4), late={"late"}, static={"fixed"})
     ends = {name: end for name, _, _, end in schedule.stages()}
     assert ends == {"product": 4, "total": 5, "result_add": 5, "result": 7}
@@ -202,7 +235,7 @@ def test_a_schedule_by_hand():
 def test_wires_take_no_time():
     graph = Graph()
     x = graph.input("x", unsigned(0, 8))
-    graph.finish({"y": x.field(2, unsigned(0, 4)).scale(3)}, ["y"])
+    graph.name_and_prune({"y": x.field(2, unsigned(0, 4)).scale(3)}, ["y"])
     schedule = Schedule(graph, Cost())
     assert schedule.latency == 0 and schedule.stages() == []
 

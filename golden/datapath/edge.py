@@ -36,7 +36,7 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
     """
     span = fmt.position.int_bits
     axis = axis_of(fmt, tables, i.x, j.x)
-    u, l_shift, inverse = (axis[name] for name in ("u", "l_shift", "inverse"))
+    u, l_shift, inverse = axis["u"], axis["l_shift"], axis["inverse"]
 
     # ldot = u . w with w = vj - vi
     w, w_shift = normalise([c.scale(-1) for c in difference(j.v, i.v)], fmt.operand)
@@ -54,7 +54,7 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
 
     # rho(|g|) and sigma(|g|): constants outside the middle branch of (7), a table inside
     branch = damper(fmt, tables, material, size, g, g_shift)
-    rho, rho_shift, sigma, sigma_shift = (branch[n] for n in ("rho", "rho_shift", "sigma", "sigma_shift"))
+    rho, rho_shift, sigma, sigma_shift = branch["rho"], branch["rho_shift"], branch["sigma"], branch["sigma_shift"]
 
     # f = -rho g along u: g u first, which is ready before rho is
     along = [with_sign(negative, c).to(fmt.direction) for c in u]
@@ -77,7 +77,18 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
     value = value.to(Q(value.fmt.int_bits + 1, fmt.ratio.frac_bits))  # never saturates: what is beyond is clamped
     ratio_next = clamp(value, material.a_min, material.a_max).to(fmt.ratio)
     base_next = stage.last.select(ratio_next, state.base)
-    return axis | branch | locals()
+    return (
+        axis
+        | {"w": w, "w_shift": w_shift, "rate": rate, "share": share}
+        | {"relaxed": relaxed, "stretch": stretch, "stretch_shift": stretch_shift}
+        | {"spring": spring, "dashpot": dashpot, "trial": trial, "negative": negative}
+        | {"size": size, "g": g, "g_shift": g_shift}
+        | branch
+        | {"along": along, "trials": trials, "f_shift": f_shift, "pull": pull}
+        | {"s": s, "s_shift": s_shift, "creep": creep, "extension": extension, "net": net, "net_shift": net_shift}
+        | {"weighted": weighted, "weight_shift": weight_shift, "slope_shift": slope_shift, "slope": slope}
+        | {"total": total, "total_next": total_next, "value": value, "ratio_next": ratio_next, "base_next": base_next}
+    )
 
 
 def axis_of(fmt, tables, xi, xj):
@@ -95,7 +106,14 @@ def axis_of(fmt, tables, xi, xj):
     l_shift = d_shift + short
     products = [c * inverse for c in d]
     u = [short.select(product.scale(1), product).to(fmt.direction) for product in products]
-    return locals()
+    return {
+        "d": d,
+        "d_shift": d_shift,
+        "squared": squared,
+        "short": short,
+        "square": square,
+        "degenerate": degenerate,
+    } | {"l_shift": l_shift, "inverse": inverse, "products": products, "u": u}
 
 
 def voigt_length(fmt, share, axis):
@@ -135,4 +153,9 @@ def damper(fmt, tables, material, size, g, g_shift):
     rho_shift = branch(material.rho_low_shift, word.rho_shift, material.rho_high_shift)
     sigma = branch(material.sigma_low, sigma_middle, material.sigma_high)
     sigma_shift = branch(material.sigma_low_shift, word.sigma_shift, material.sigma_high_shift)
-    return locals()
+    return (
+        {"octave_fraction": octave_fraction, "octaves": octaves}
+        | {"place": place, "segment": segment, "fraction": fraction}
+        | {"rho_middle": rho_middle, "sigma_middle": sigma_middle, "below": below, "between": between}
+        | {"rho": rho, "rho_shift": rho_shift, "sigma": sigma, "sigma_shift": sigma_shift}
+    )

@@ -42,7 +42,12 @@ def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
         stage, rk4_early, state.x_base, state.x_total, displacement, fmt.position, fmt.displacement
     )
     v, v_base_next, v_total = advance(stage, rk4, state.v_base, state.v_total, acceleration, fmt.velocity, fmt.velocity)
-    return locals()
+    return (
+        {"sums": sums, "force": force, "mantissa": mantissa, "mantissa_shift": shift}
+        | {"factor": factor, "factor_shift": factor_shift, "gain": products, "gain_shift": slope_shift}
+        | {"acceleration": acceleration, "v_total": v_total, "v": v, "v_base_next": v_base_next}
+        | {"displacement": displacement, "x_total": x_total, "x": x, "x_base_next": x_base_next}
+    )
 
 
 def advance(stage, rule, base, total, slope, value_format, total_format):

@@ -1,6 +1,6 @@
-"""The datapath as data: numbers that record what is done to them instead of doing it.
+"""The datapath as data: numbers that record the operations on them instead of computing.
 
-Running the equations on these gives a graph; the pipeline (`hw.pipeline.pipe`) and the compiled integer model
+Running the equations on these gives a graph. The pipeline (`hw.pipeline.pipe`) and the compiled integer model
 (`sim.backends.native`) are made from it, so neither repeats an equation.
 """
 
@@ -12,31 +12,42 @@ from golden.numbers.record import Record
 
 AXES = ("x", "y", "z")
 IN_TURN = ("turn",)
-"""The one component that there is at a time, where a vector's components come one after the other."""
+"""The axes of a graph in which the components of a vector come one after the other: it has one component at a time."""
 
 
 @dataclass(eq=False, repr=False)
-class Node:
-    """A number of the datapath (`golden.numbers.qarray`): the operation that makes it, its operands and its format.
+class Operation:
+    """A `golden.numbers.number.Number` that stands for the operation that makes it.
 
-    ``kind`` is the name of the operation as in `QArray`, or ``input``, ``const``, ``read`` (a table's word) and
-    ``part`` (a field of it); ``detail`` is what the operation needs besides operands.
+    Attributes
+    ----------
+    kind : str
+        The name of the operation as in `golden.numbers.qarray.QArray`, or ``input``, ``const``, ``read`` (a table's
+        word) or ``part`` (a field of it).
+    detail
+        What the operation needs besides its operands.
+    name : str
+        A name that no other operation of the graph has, once `Graph.name_and_prune` has run.
+    quantity : str
+        The named quantity that this is, or of which it is a component; empty if it is none.
     """
 
     graph: "Graph"
     kind: str
     fmt: Q
-    operands: tuple["Node", ...]
+    operands: tuple["Operation", ...]
     detail: object = None
     name: str = ""
+    quantity: str = ""
 
-    def __repr__(self):  # without the operands: a graph has far more paths than nodes
+    def __repr__(self):  # without the operands: a graph has far more paths than operations
         return f"<{self.kind} {self.name}>"
 
-    def _number(self, other, beside=None) -> "Node":
-        if isinstance(other, Node):
+    def _number(self, other, beside=None) -> "Operation":
+        if isinstance(other, Operation):
             return other
-        return self.graph.const(other, beside.fmt if other == 0 and isinstance(beside, Node) else smallest(other))
+        fmt = beside.fmt if other == 0 and isinstance(beside, Operation) else smallest(other)
+        return self.graph.const(other, fmt)
 
     def _make(self, kind, fmt, *operands, detail=None):
         return self.graph.add(kind, fmt, operands, detail)
@@ -77,9 +88,6 @@ class Node:
     def field(self, low, fmt):
         return self._make("field", fmt, self, detail=low)
 
-    def fault(self, name):
-        self.graph.faults.append((name, self))
-
     @staticmethod
     def lead(vector, most):
         graph = vector[0].graph
@@ -93,107 +101,103 @@ class Node:
         x = self if left is None else self._make("shift_left", self.fmt, self, left)
         return x._make("round", fmt, x)
 
+    def fault(self, name):
+        self.graph.faults.append((name, self))
+
 
 @dataclass
 class Graph:
-    """Nodes in an order in which each comes after its operands.
+    """Operations, each after its operands.
 
     Attributes
     ----------
-    inputs, outputs : dict of str to Node
-    faults : list of (str, Node)
+    inputs, outputs : dict of str to Operation
+    faults : list of (str, Operation)
         Bits that report a fault of that name, besides the saturation of every ``round`` and ``shift_right`` to a
         format with a name.
     axes : tuple of str
-        What the names of a vector's components end in: `AXES`, or `IN_TURN` where they come one after the other.
+        Suffixes of the names of a vector's components: `AXES` or `IN_TURN`.
     """
 
-    nodes: list[Node] = field(default_factory=list)
-    inputs: dict[str, Node] = field(default_factory=dict)
-    outputs: dict[str, Node] = field(default_factory=dict)
-    faults: list[tuple[str, Node]] = field(default_factory=list)
+    operations: list[Operation] = field(default_factory=list)
+    inputs: dict[str, Operation] = field(default_factory=dict)
+    outputs: dict[str, Operation] = field(default_factory=dict)
+    faults: list[tuple[str, Operation]] = field(default_factory=list)
     axes: tuple[str, ...] = AXES
 
-    def add(self, kind, fmt, operands=(), detail=None, name="") -> Node:
-        node = Node(self, kind, fmt, tuple(operands), detail, name)
-        self.nodes.append(node)
-        return node
+    def add(self, kind, fmt, operands=(), detail=None, name="") -> Operation:
+        operation = Operation(self, kind, fmt, tuple(operands), detail, name)
+        self.operations.append(operation)
+        return operation
 
-    def const(self, raw: int, fmt: Q) -> Node:
+    def const(self, raw: int, fmt: Q) -> Operation:
         return self.add("const", fmt, detail=raw)
 
-    def input(self, name: str, fmt: Q) -> Node:
-        self.inputs[name] = node = self.add("input", fmt, name=name)
-        return node
+    def input(self, name: str, fmt: Q) -> Operation:
+        self.inputs[name] = operation = self.add("input", fmt, name=name)
+        return operation
 
     def record(self, prefix: str, formats: dict[str, Q]) -> SimpleNamespace:
         return SimpleNamespace(**{name: self.input(f"{prefix}_{name}", q) for name, q in formats.items()})
 
-    def vector(self, name: str, fmt: Q) -> list[Node]:
+    def vector(self, name: str, fmt: Q) -> list[Operation]:
         return [self.input(f"{name}_{axis}", fmt) for axis in self.axes]
 
-    def gather(self, x: Node) -> Node:
-        """The bits that the sizes of all components have between them, for a component that comes in its turn."""
+    def gather(self, x: Operation) -> Operation:
+        """Return the OR of the magnitudes of all components, for components that come one after the other."""
         size = unsigned(x.fmt.int_bits - x.fmt.signed, x.fmt.frac_bits)
         return self.add("gather", size, (x, self.inputs["first_turn"]))
 
-    def read(self, table: str, word: Record, *index: Node) -> SimpleNamespace:
-        """The word of ``table`` at ``index``, as a namespace of its fields."""
+    def read(self, table: str, word: Record, *index: Operation) -> SimpleNamespace:
+        """Return the word of ``table`` at ``index``, as a namespace of its fields."""
         whole = self.add("read", unsigned(word.width, 0), index, detail=(table, word))
         return SimpleNamespace(**{name: self.add("part", q, (whole,), detail=name) for name, q in word.items()})
 
-    def finish(self, values: dict, outputs: list[str]):
-        """Name the nodes after the variables that hold them, and keep what the outputs need.
+    def name_and_prune(self, quantities: dict, outputs: list[str]):
+        """Name all operations, and drop what the outputs don't need.
 
-        ``values`` are a datapath's variables; a list is a vector, whose components get an axis as suffix. A variable
-        that is called like an input is its next value.
+        Parameters
+        ----------
+        quantities : dict
+            Named operations; a list is a vector, whose components get an axis as suffix. A quantity with the name of an
+            input is its next value.
+        outputs : list of str
+            Names of quantities.
         """
-        for name, value in values.items():
-            for label, node in flatten(name, value, self.axes):
-                if isinstance(node, Node) and not node.name:
-                    node.name = f"{label}_next" if label in self.inputs else label
-        self.keep({label: node for name in outputs for label, node in flatten(name, values[name], self.axes)})
+        for name, value in quantities.items():
+            for label, operation in flatten(name, value, self.axes):
+                if not operation.name:
+                    operation.name = f"{label}_next" if label in self.inputs else label
+                    operation.quantity = name
+        self.prune({label: x for name in outputs for label, x in flatten(name, quantities[name], self.axes)})
         self._name_the_rest()
 
-    def keep(self, outputs: dict[str, Node]):
-        """Only what these outputs need, and all inputs and faults."""
+    def prune(self, outputs: dict[str, Operation]):
+        """Keep only what these outputs need, and all inputs and faults."""
         self.outputs = outputs
-        needed = {id(node) for node in (*self.outputs.values(), *self.inputs.values())}
-        needed |= {id(node) for _, node in self.faults}
-        for node in reversed(self.nodes):
-            if id(node) in needed:
-                needed |= {id(operand) for operand in node.operands}
-        self.nodes = [node for node in self.nodes if id(node) in needed]
+        needed = {id(x) for x in (*self.outputs.values(), *self.inputs.values())} | {id(x) for _, x in self.faults}
+        for operation in reversed(self.operations):
+            if id(operation) in needed:
+                needed |= {id(operand) for operand in operation.operands}
+        self.operations = [x for x in self.operations if id(x) in needed]
 
     def _name_the_rest(self):
-        """An operand without a name of its own is called after what it is for: ``rate_mul``, ``rate_add`` ..."""
-        purpose = {id(node): node.name for node in self.nodes if node.name}
+        """Name operands that have no name after the quantity they are for: ``rate_mul``, ``rate_add`` ..."""
+        purpose = {id(x): x.name for x in self.operations if x.name}
         taken = set(purpose.values())
-        for node in reversed(self.nodes):
-            for operand in node.operands:
+        for operation in reversed(self.operations):
+            for operand in operation.operands:
                 if id(operand) in purpose:
                     continue
-                purpose[id(operand)] = purpose[id(node)]
-                stem = f"{purpose[id(node)]}_{operand.kind}"
-                names = (stem, *(f"{stem}{number}" for number in range(2, len(self.nodes))))
+                purpose[id(operand)] = purpose[id(operation)]
+                stem = f"{purpose[id(operation)]}_{operand.kind}"
+                names = (stem, *(f"{stem}{number}" for number in range(2, len(self.operations))))
                 operand.name = next(name for name in names if name not in taken)
                 taken.add(operand.name)
 
 
 def flatten(name, value, axes=AXES):
+    """Return (name, number) pairs: one for a number, one for each component of a vector."""
     if isinstance(value, list):
         return [(f"{name}_{axis}", item) for axis, item in zip(axes, value, strict=False)]
     return [(name, value)]
-
-
-class Reader:
-    """The lookups of `golden.datapath.edge` on graph nodes."""
-
-    def __init__(self, graph: Graph, inverse: Record, damper: Record):
-        self._graph, self._inverse, self._damper = graph, inverse, damper
-
-    def inverse(self, index):
-        return self._graph.read("inverse", self._inverse, index)
-
-    def damper(self, table, index):
-        return self._graph.read("damper", self._damper, table, index)

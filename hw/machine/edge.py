@@ -16,8 +16,8 @@ from hw.pipeline.cost import Cost
 from hw.pipeline.pipe import Pipe
 from hw.pipeline.schedule import Schedule
 
-PATIENCE = 16
-"""Cycles that an edge's own words may come after its force: its nodes are being updated then."""
+STATE_SLACK = 16
+"""Cycles by which an edge's own words may come later than its force: its nodes are being updated then."""
 
 
 class EdgeDatapath:
@@ -37,8 +37,10 @@ class EdgeDatapath:
     @cached_property
     def schedule(self):
         late = {name for name in self.graph.inputs if name.startswith(("i_v", "j_v", "material_", "edge_", "stage_"))}
-        prompt = {name for name in self.graph.outputs if name.startswith("pull_")}
-        return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"}, prompt=prompt, patience=PATIENCE)
+        pulls = {name for name in self.graph.outputs if name.startswith("pull_")}
+        return Schedule(
+            self.graph, self.cost, late=late, static={"velocity_shift"}, critical_outputs=pulls, slack=STATE_SLACK
+        )
 
     @cached_property
     def faults(self) -> list[str]:
@@ -148,5 +150,5 @@ class EdgeProcessor(wiring.Component):
 
 def fault_names(graph) -> list[str]:
     """Return the names of all faults that a graph can report, sorted."""
-    saturating = {node.fmt.name for node in graph.nodes if node.kind in {"round", "shift_right"}}
+    saturating = {node.fmt.name for node in graph.operations if node.kind in {"round", "shift_right"}}
     return sorted((saturating | {name for name, _ in graph.faults}) - {""})

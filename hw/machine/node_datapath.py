@@ -28,7 +28,7 @@ class NodeDatapath:
     @cached_property
     def graph(self):
         graph = node_graph(self.formats, self.banks, self.axes)
-        graph.keep({name: node for name, node in graph.outputs.items() if "base_next" not in name})
+        graph.prune({name: node for name, node in graph.outputs.items() if "base_next" not in name})
         return graph
 
     @cached_property

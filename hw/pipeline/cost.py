@@ -1,8 +1,9 @@
-"""What each operation of the datapath costs in registers, in one place."""
+"""The registers that each operation of the datapath costs, in one place."""
 
 from dataclasses import dataclass
 
-from golden.numbers.graph import Node
+from golden.datapath.quantities import QUANTITIES, check_known
+from golden.numbers.graph import Operation
 from hw.blocks.gather import GATHERED
 from hw.blocks.memory import READ_LATENCY
 from hw.blocks.narrow import levels
@@ -11,21 +12,31 @@ from hw.pipeline.operations import step_count
 
 @dataclass(frozen=True)
 class Cost:
-    """Registers behind each kind of operation of `golden.numbers.graph` (0: it shares the next operation's cycle).
+    """Registers after each kind of operation; with 0 it shares a cycle with the operation that uses it.
 
-    Those named in ``more``, as `golden.numbers.graph` names them but for a vector's axis, have one more: place and
-    route found the longest ways behind them.
+    An operation in several steps (`hw.pipeline.operations`) has its registers after its last steps; if it has more
+    registers than steps, the rest follow as a delay.
 
-    A product with an unsigned number of at most ``narrow`` bits is made of lookup tables instead of a multiplier, if
-    ``mul`` registers are enough for it (`hw.blocks.narrow`).
-
-    An operation in several steps (`hw.pipeline.operations`) gets its registers behind its last steps; those that it has
-    more than steps follow as a delay. A sum has them behind each addition of three numbers.
+    Parameters
+    ----------
+    add, sub, abs, less, select, lead, shift_left, round, shift_right : int
+        Registers after an operation of that kind.
+    mul : int
+        Registers in and after a multiplier, at least 2.
+    narrow : int
+        Bits up to which an unsigned factor makes a product of lookup tables instead of a multiplier, if ``mul``
+        registers are enough for it (`hw.blocks.narrow`).
+    sum : int
+        Registers after each addition of three terms.
+    gather, read : int
+        Cycles of `hw.blocks.gather.Gather` and of a block RAM.
+    extra_register_after : tuple of str
+        Quantities with one register more: their paths were the longest after routing.
 
     Raises
     ------
     ValueError
-        If a multiplier has fewer than 2.
+        If a multiplier has fewer than 2 registers, or there is no quantity of such a name.
     """
 
     add: int = 1
@@ -42,20 +53,20 @@ class Cost:
     round: int = 0
     shift_right: int = 2
     read: int = READ_LATENCY
-    more: tuple[str, ...] = ("d", "relaxed", "stretch", "spring", "rho", "pull", "acceleration")
-
-    def of(self, node: Node) -> int:
-        """Cycles from a node's operands to its value."""
-        registers = getattr(self, node.kind)
-        vector, _, axis = node.name.rpartition("_")
-        more = (vector if axis in node.graph.axes else node.name) in self.more
-        return (registers * step_count(node) if node.kind == "sum" else registers) + more
-
-    def narrow_product(self, node: Node) -> bool:
-        """Whether a product is made of lookup tables."""
-        narrow = min((operand.fmt for operand in node.operands), key=lambda q: q.width)
-        return not narrow.signed and narrow.width <= self.narrow and levels(narrow.width) <= self.mul
+    extra_register_after: tuple[str, ...] = tuple(q.name for q in QUANTITIES.values() if q.extra_register_after)
 
     def __post_init__(self):
         if self.mul < 2:
             raise ValueError(f"mul must be at least 2 registers, not {self.mul!r}")
+        check_known(self.extra_register_after, "extra_register_after")
+
+    def of(self, operation: Operation) -> int:
+        """Return the cycles from an operation's operands to its value."""
+        registers = getattr(self, operation.kind)
+        steps = step_count(operation) if operation.kind == "sum" else 1
+        return registers * steps + (operation.quantity in self.extra_register_after)
+
+    def narrow_product(self, operation: Operation) -> bool:
+        """Return whether a product is made of lookup tables."""
+        narrow = min((operand.fmt for operand in operation.operands), key=lambda q: q.width)
+        return not narrow.signed and narrow.width <= self.narrow and levels(narrow.width) <= self.mul

@@ -1,7 +1,7 @@
 """The operations of `golden.numbers.graph` as combinational steps; `hw.pipeline.pipe` puts registers between them.
 
-Each function takes ``wire``, a node of the graph and its operands' values, and yields one tuple of values after each
-step, the result first. A register may follow any of them: the next step is given what the one before yielded,
+Each function takes ``wire``, an operation of the graph and the values of its operands. It yields a tuple of values
+after each step, the result first. A register may follow each step: the next step is sent what the one before yielded,
 registered or not. ``wire(value)`` gives a value that is used more than once a signal of its own, so that the Verilog
 says it once; ``wire.shifted(x, times, places, left=)`` is a `hw.blocks.shifter.ShiftStage`.
 """
@@ -38,50 +38,50 @@ def aligned(*operands):
     return [value << frac - q.frac_bits for value, q in operands]
 
 
-def _pair(node, a, b):
-    first, second = node.operands[-2:]
+def _pair(operation, a, b):
+    first, second = operation.operands[-2:]
     return aligned((a, first.fmt), (b, second.fmt))
 
 
-def add(wire, node, a, b):
-    x, y = _pair(node, a, b)
+def add(wire, operation, a, b):
+    x, y = _pair(operation, a, b)
     yield (x + y,)
 
 
-def total(wire, node, *terms):
+def total(wire, operation, *terms):
     """Three by three: synthesis makes one carry chain of each three."""
-    terms = aligned(*((x, operand.fmt) for x, operand in zip(terms, node.operands, strict=True)))
+    terms = aligned(*((x, operand.fmt) for x, operand in zip(terms, operation.operands, strict=True)))
     while len(terms) > 3:
         terms = yield tuple(wire(sum(terms[first : first + 3])) for first in range(0, len(terms), 3))
     yield (sum(terms),)
 
 
-def sub(wire, node, a, b):
-    x, y = _pair(node, a, b)
+def sub(wire, operation, a, b):
+    x, y = _pair(operation, a, b)
     yield (x - y,)
 
 
-def less(wire, node, a, b):
-    x, y = _pair(node, a, b)
+def less(wire, operation, a, b):
+    x, y = _pair(operation, a, b)
     yield (x < y,)
 
 
-def select(wire, node, bit, yes, no):
-    x, y = _pair(node, yes, no)
+def select(wire, operation, bit, yes, no):
+    x, y = _pair(operation, yes, no)
     yield (Mux(bit, x, y),)
 
 
-def absolute(wire, node, a):
+def absolute(wire, operation, a):
     yield (Mux(negative(a), -a, a),)
 
 
-def lead(wire, node, *vector):
+def lead(wire, operation, *vector):
     """Leading zeros of the OR of all magnitudes, first of groups of bits."""
     magnitude = Const(0)
     for x in vector:
         magnitude |= size(x)
-    magnitude = wire(magnitude)[-node.detail :]
-    groups = [slice(max(0, low), low + GROUP) for low in range(node.detail - GROUP, -GROUP, -GROUP)]
+    magnitude = wire(magnitude)[-operation.detail :]
+    groups = [slice(max(0, low), low + GROUP) for low in range(operation.detail - GROUP, -GROUP, -GROUP)]
     magnitude, some = yield magnitude, Cat(magnitude[group].any() for group in groups)
     yield (_leading_zeros([(bit, magnitude[group]) for bit, group in zip(some, groups, strict=True)]),)
 
@@ -110,7 +110,7 @@ def _leading_zeros(groups) -> Value:
     return Mux(some, _leading_zeros(upper), half * GROUP + _leading_zeros(lower))
 
 
-def shift_left(wire, node, x, count):
+def shift_left(wire, operation, x, count):
     """Bits that leave at the top are redundant (`lead`)."""
     low = len(count) // 4 * 2
     x = _shifted(wire, x, count, low, left=True)
@@ -126,9 +126,9 @@ def _shifted(wire, x, count, low=0, *, left):
     return x
 
 
-def round_half_up(wire, node, x):
+def round_half_up(wire, operation, x):
     """Operand's fraction bits beyond the format's are dropped, then the result saturates; second value: the fault."""
-    source, target = node.operands[0].fmt, node.fmt
+    source, target = operation.operands[0].fmt, operation.fmt
     drop = source.frac_bits - target.frac_bits
     if drop <= 0:
         value = x << -drop
@@ -137,14 +137,14 @@ def round_half_up(wire, node, x):
         yield _saturate(target, wire((x + (1 << drop - 1)) >> drop), x >> drop)
 
 
-def shift_right(wire, node, x, count):
+def shift_right(wire, operation, x, count):
     """Rounds, or cuts, and saturates ``x * 2**-count``, the count as `shift_count` gives it; second value: the
     fault."""
-    target = node.fmt
-    drop = max(0, node.operands[0].fmt.frac_bits - target.frac_bits)
-    x = x << _grown(node)
+    target = operation.fmt
+    drop = max(0, operation.operands[0].fmt.frac_bits - target.frac_bits)
+    x = x << _grown(operation)
     some = left = below = Const(0)
-    if node.operands[1].fmt.signed:
+    if operation.operands[1].fmt.signed:
         some, left, below = Cat(x[low : low + 8].any() for low in range(0, len(x), 8)), count[-1], negative(x)
     count = count[:-1]
     low = len(count) // 4 * 2
@@ -153,17 +153,17 @@ def shift_right(wire, node, x, count):
     beyond = some if never(some) else left & some.any()
     x = _shifted(wire, x, count, left=False)
     x, beyond, below = yield x >> drop, beyond, below
-    floor = x >> _rounding_bits(node)
-    result, fault = _saturate(target, floor if node.detail == "cut" else wire((x + 1) >> 1), floor)
+    floor = x >> _rounding_bits(operation)
+    result, fault = _saturate(target, floor if operation.detail == "cut" else wire((x + 1) >> 1), floor)
     extreme = either(below, Const(target.raw_min, shape(target)), Const(target.raw_max, shape(target)))
     yield either(beyond, extreme, result), fault if never(beyond) else fault | beyond
 
 
-def shift_count(node, count):
+def shift_count(operation, count):
     """What a right shift makes of its count, which may be known earlier than the number: how far, in bits enough to
     leave nothing of any number, and whether to the left."""
-    source = node.operands[0].fmt
-    bits = (source.width + _grown(node)).bit_length()
+    source = operation.operands[0].fmt
+    bits = (source.width + _grown(operation)).bit_length()
     left = negative(count)
     amount = count[: min(bits, len(count))]
     if bits < len(count):
@@ -171,14 +171,14 @@ def shift_count(node, count):
     return Cat(amount[:bits], left)
 
 
-def _grown(node) -> int:
+def _grown(operation) -> int:
     """Places that a number gets before its right shift."""
-    return _rounding_bits(node) + max(0, node.fmt.frac_bits - node.operands[0].fmt.frac_bits)
+    return _rounding_bits(operation) + max(0, operation.fmt.frac_bits - operation.operands[0].fmt.frac_bits)
 
 
-def _rounding_bits(node) -> int:
+def _rounding_bits(operation) -> int:
     """Bits that a shifted number has more than its result, to round with."""
-    return int(node.detail != "cut")
+    return int(operation.detail != "cut")
 
 
 def _saturate(target: Q, rounded, floor):
@@ -227,18 +227,18 @@ STEPS = {
 }
 
 
-def step_count(node) -> int:
-    """Steps of a node's operation."""
-    if node.kind == "sum":
-        return next(steps for steps in itertools.count(1) if 3**steps >= len(node.operands))
-    return {"lead": 2, "shift_left": 2, "shift_right": 3}.get(node.kind, 1)
+def step_count(operation) -> int:
+    """Steps of a operation's operation."""
+    if operation.kind == "sum":
+        return next(steps for steps in itertools.count(1) if 3**steps >= len(operation.operands))
+    return {"lead": 2, "shift_left": 2, "shift_right": 3}.get(operation.kind, 1)
 
 
-def field(node, x):
+def field(operation, x):
     """Wires only: bits of the operand, or the operand as it is in another format."""
-    if node.kind == "part":
-        _, word = node.operands[0].detail
-        return word.field(node.detail, x)
-    if node.kind == "field":
-        x = x[node.detail : node.detail + node.fmt.width]
-    return x.as_signed() if node.fmt.signed else x.as_unsigned()
+    if operation.kind == "part":
+        _, word = operation.operands[0].detail
+        return word.field(operation.detail, x)
+    if operation.kind == "field":
+        x = x[operation.detail : operation.detail + operation.fmt.width]
+    return x.as_signed() if operation.fmt.signed else x.as_unsigned()

@@ -4,14 +4,14 @@ import itertools
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
-from golden.numbers.graph import Node
+from golden.numbers.graph import Operation
 from hw.blocks.gather import Gather
 from hw.blocks.multiplier import Multiplier
 from hw.blocks.narrow import NarrowMultiplier
 from hw.blocks.shifter import ShiftStage
 from hw.pipeline.delay import DelayLines
 from hw.pipeline.operations import STEPS, field, never, shape, shift_count, size, step_count
-from hw.pipeline.schedule import WIRES, Schedule, behind_wires
+from hw.pipeline.schedule import WIRES, Schedule, before_wires
 
 FAULT_LATENCY = 1
 """Cycles from a value to its fault."""
@@ -46,19 +46,19 @@ class Pipe:
         self._valid, self._reset = valid, reset
         self._faults: dict[str, list] = {}
         # The terms of a sum come from all over the device, and it has more to do in its cycle than others
-        sums = [node for node in schedule.graph.nodes if node.kind == "sum"]
-        self._summed = {behind_wires(term) for node in sums for term in node.operands}
-        for node in schedule.graph.nodes:
-            if node in schedule.start:
-                self._emit(node)
-        for name, node in schedule.graph.faults:
-            self._report(name, self.at(node, schedule.cycle[node]), schedule.cycle[node])
+        sums = [operation for operation in schedule.graph.operations if operation.kind == "sum"]
+        self._summed = {before_wires(term) for operation in sums for term in operation.operands}
+        for operation in schedule.graph.operations:
+            if operation in schedule.start:
+                self._emit(operation)
+        for name, operation in schedule.graph.faults:
+            self._report(name, self.at(operation, schedule.cycle[operation]), schedule.cycle[operation])
         self.faults = {name: Cat(*bits).any() for name, bits in self._faults.items()}
 
     def output(self, name: str, cycle: int | None = None):
         """The value of an output in its cycle, or delayed to a later one."""
-        node = self._schedule.graph.outputs[name]
-        return self.at(node, self._schedule.cycle[node] if cycle is None else cycle)
+        operation = self._schedule.graph.outputs[name]
+        return self.at(operation, self._schedule.cycle[operation] if cycle is None else cycle)
 
     def build(self):
         """The delay lines, when all outputs have been asked for."""
@@ -68,78 +68,78 @@ class Pipe:
         """1 when the item that is in ``cycle`` is a valid one."""
         return self._delays.later(self._valid, cycle, name="valid", reset=True)
 
-    def at(self, node: Node, cycle: int):
-        """A node's value in ``cycle``; delay lines are shared."""
-        if node.kind == "const":
-            return Const(node.detail, shape(node.fmt))
-        if node.kind in WIRES:
-            return field(node, self.at(node.operands[0], cycle))
-        if node.kind == "input":
-            return self._input(node, cycle)
-        start, done = self._schedule.start[node], self._schedule.cycle[node]
-        return self._delays.later(self._results[node], cycle - done, name=node.name, wire=start == done)
+    def at(self, operation: Operation, cycle: int):
+        """A operation's value in ``cycle``; delay lines are shared."""
+        if operation.kind == "const":
+            return Const(operation.detail, shape(operation.fmt))
+        if operation.kind in WIRES:
+            return field(operation, self.at(operation.operands[0], cycle))
+        if operation.kind == "input":
+            return self._input(operation, cycle)
+        start, done = self._schedule.start[operation], self._schedule.cycle[operation]
+        return self._delays.later(self._results[operation], cycle - done, name=operation.name, wire=start == done)
 
-    def _input(self, node, cycle):
-        first = self._schedule.cycle[node]
+    def _input(self, operation, cycle):
+        first = self._schedule.cycle[operation]
         if first is None:  # late, or static and then the same in every cycle
-            first = self._schedule.arrival.get(node.name, cycle)
-        return self._delays.later(self._inputs[node.name], cycle - first)
+            first = self._schedule.arrival.get(operation.name, cycle)
+        return self._delays.later(self._inputs[operation.name], cycle - first)
 
-    def _emit(self, node: Node):
-        start, done = self._schedule.start[node], self._schedule.cycle[node]
-        operands = [self._operand(node, number, start) for number in range(len(node.operands))]
-        if node.kind == "mul":
-            result = self._product(node, operands, done - start)
-        elif node.kind == "read":
-            result = self._tables[node.detail[0]](*operands)
-        elif node.kind == "gather":
-            result = self._gathered(node, *operands)
+    def _emit(self, operation: Operation):
+        start, done = self._schedule.start[operation], self._schedule.cycle[operation]
+        operands = [self._operand(operation, number, start) for number in range(len(operation.operands))]
+        if operation.kind == "mul":
+            result = self._product(operation, operands, done - start)
+        elif operation.kind == "read":
+            result = self._tables[operation.detail[0]](*operands)
+        elif operation.kind == "gather":
+            result = self._gathered(operation, *operands)
         else:
-            result, *fault = self._steps(node, operands)
+            result, *fault = self._steps(operation, operands)
             if fault:
-                self._report(node.fmt.name, fault[0], done)
-        self._results[node] = result
+                self._report(operation.fmt.name, fault[0], done)
+        self._results[operation] = result
 
-    def _product(self, node, operands, registers):
-        narrow = self._schedule.cost.narrow_product(node)
+    def _product(self, operation, operands, registers):
+        narrow = self._schedule.cost.narrow_product(operation)
         make, (a, b) = (NarrowMultiplier, sorted(operands, key=len)[::-1]) if narrow else (Multiplier, operands)
-        how = {} if narrow else {"apart": node in self._summed}
-        self._m.submodules[node.name] = multiplier = make(a.shape(), b.shape(), registers=registers, **how)
+        how = {} if narrow else {"apart": operation in self._summed}
+        self._m.submodules[operation.name] = multiplier = make(a.shape(), b.shape(), registers=registers, **how)
         self._m.d.comb += [multiplier.a.eq(a), multiplier.b.eq(b)]
         return multiplier.product
 
-    def _gathered(self, node, x, first):
-        self._m.submodules[node.name] = gather = Gather(width=node.fmt.width)
+    def _gathered(self, operation, x, first):
+        self._m.submodules[operation.name] = gather = Gather(width=operation.fmt.width)
         self._m.d.comb += [gather.i.eq(size(x)), gather.first.eq(first)]
         return gather.o
 
-    def _operand(self, node, number, start):
+    def _operand(self, operation, number, start):
         """In the operation's first cycle. A count is made ready for its shift, with as many registers behind it, two at
         most, as it is known before."""
-        if (node.kind, number) != ("shift_right", 1):
-            return self.at(node.operands[number], start)
-        count = node.operands[1]
+        if (operation.kind, number) != ("shift_right", 1):
+            return self.at(operation.operands[number], start)
+        count = operation.operands[1]
         before = next(cycles for cycles in (2, 1, 0) if not cycles or self._schedule.known(count, start - cycles))
-        ready = shift_count(node, self.at(count, start - before))
+        ready = shift_count(operation, self.at(count, start - before))
         if not before:
             return ready
-        register = Signal(len(ready), name=f"{node.name}_count", reset_less=True)
+        register = Signal(len(ready), name=f"{operation.name}_count", reset_less=True)
         self._m.d.sync += register.eq(ready)
         return self._delays.later(register, before - 1)
 
-    def _steps(self, node, operands):
+    def _steps(self, operation, operands):
         """The operation's values, the registers that it costs behind the last of its steps."""
-        count, cost = step_count(node), self._schedule.cycle[node] - self._schedule.start[node]
-        steps = STEPS[node.kind](_Wires(self._m, node.name), node, *operands)
+        count, cost = step_count(operation), self._schedule.cycle[operation] - self._schedule.start[operation]
+        steps = STEPS[operation.kind](_Wires(self._m, operation.name), operation, *operands)
         values = next(steps)
         for step in range(1, count):
             if count - step < cost:
-                values = self._register([f"{node.name}_s{step}_{n}" for n in range(len(values))], values)
+                values = self._register([f"{operation.name}_s{step}_{n}" for n in range(len(values))], values)
             values = steps.send(values)
-        if not node.fmt.name:  # saturates without a word
+        if not operation.fmt.name:  # saturates without a word
             values = values[:1]
-        names = [node.name, f"{node.name}_fault"][: len(values)]
-        result = Signal(shape(node.fmt), name=node.name, reset_less=True)
+        names = [operation.name, f"{operation.name}_fault"][: len(values)]
+        result = Signal(shape(operation.fmt), name=operation.name, reset_less=True)
         self._m.d["sync" if cost else "comb"] += result.eq(values[0])
         rest = self._register(names[1:], values[1:]) if cost else values[1:]
         values = (result, *rest)

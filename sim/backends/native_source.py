@@ -4,7 +4,7 @@ from golden.datapath import records
 from golden.datapath.formats import Formats
 from golden.datapath.graphs import edge_graph, node_graph
 from golden.datapath.rk4 import RK4
-from golden.numbers.graph import AXES, Graph, Node
+from golden.numbers.graph import AXES, Graph, Operation
 
 WIDEST = 63
 """Bits of the widest number, sign included: its rounding must fit an int64."""
@@ -46,7 +46,7 @@ def sources(fmt: Formats) -> tuple[dict[str, str], list[str]]:
 
 
 def _faults(graph: Graph) -> set[str]:
-    rounded = {node.fmt.name for node in graph.nodes if node.kind in ("round", "shift_right")}
+    rounded = {node.fmt.name for node in graph.operations if node.kind in ("round", "shift_right")}
     return rounded - {""} | {name for name, _ in graph.faults}
 
 
@@ -64,7 +64,7 @@ class _Program:
     def __init__(self, graph: Graph, places: dict[str, str], faults: list[str]):
         self._places, self._faults = places, faults
         lines = []
-        for node in graph.nodes:
+        for node in graph.operations:
             if node.kind != "read":  # a word, wider than an int64: its fields are read one by one
                 _check_width(node.name, node.fmt.width, node.fmt.signed)
                 lines.append(f"const Int {_name(node)} = {self._expression(node, *map(_name, node.operands))};")
@@ -75,7 +75,7 @@ class _Program:
     def _counter(self, name: str) -> str:
         return f"(common.faults + {self._faults.index(name)})" if name else "nullptr"
 
-    def _expression(self, node: Node, *operands: str) -> str:
+    def _expression(self, node: Operation, *operands: str) -> str:
         match node.kind:
             case "input":
                 return self._places[node.name]
@@ -108,7 +108,7 @@ class _Program:
                 return self._rounded(node, *operands)
         raise ValueError(f"an operation must be known here, not {node.kind}")
 
-    def _rounded(self, node: Node, raw: str, right: str | None = None) -> str:
+    def _rounded(self, node: Operation, raw: str, right: str | None = None) -> str:
         source, target = node.operands[0].fmt, node.fmt
         drop = source.frac_bits - target.frac_bits
         if drop < 0:
@@ -128,7 +128,7 @@ class _Program:
 OPERATORS = {"add": "+", "sub": "-", "less": "<"}
 
 
-def _name(node: Node) -> str:
+def _name(node: Operation) -> str:
     return f"{node.name}_"  # no keyword of C++ ends like this
 
 
@@ -138,7 +138,7 @@ def _check_width(name: str, width: int, signed: bool):
         raise ValueError(f"{name} must have at most {WIDEST} bits, not {bits}: take shorter state words")
 
 
-def _aligned(*nodes: Node) -> list[str]:
+def _aligned(*nodes: Operation) -> list[str]:
     finest = max(node.fmt.frac_bits for node in nodes)
     return [_left(_name(node), finest - node.fmt.frac_bits) for node in nodes]
 
@@ -153,7 +153,7 @@ def _shifted(raw: int, source, target) -> int:
     return raw << -drop if drop <= 0 else (raw >> drop - 1) + 1 >> 1
 
 
-def _table_field(node: Node) -> str:
+def _table_field(node: Operation) -> str:
     read = node.operands[0]
     table, word = read.detail
     place = _name(read.operands[0])

@@ -8,70 +8,17 @@ from math import log2
 import numpy as np
 
 from golden.datapath.machine import Machine
+from golden.datapath.quantities import QUANTITIES
 from golden.physics.scene import Scene
 from sim.encode import limits
 from sim.encode.switch import switch
 from sim.encode.units import Units
 from sim.results.result import Raw
 
+MEASURED = {name for name, quantity in QUANTITIES.items() if quantity.measured}
+
 SAMPLES = 100
 """Steps of a run that are looked at, unless it has fewer frames or more phases."""
-
-QUANTITIES = {
-    "d": "edge vector",
-    "square": "squared length",
-    "inverse": "1 / length",
-    "u": "direction of the edge",
-    "w": "relative velocity",
-    "rate": "rate of the length",
-    "share": "ratio, as an operand",
-    "relaxed": "length of the Voigt part",
-    "stretch": "stretch of the spring",
-    "spring": "spring's trial force",
-    "dashpot": "damper's trial force",
-    "g": "size of the trial force",
-    "rho": "rho",
-    "sigma": "sigma",
-    "trials": "trial force along the axes",
-    "pull": "force on a node",
-    "s": "sigma g",
-    "creep": "creep rate",
-    "extension": "extension rate",
-    "net": "difference of the two rates",
-    "weighted": "1 / length, weighted",
-    "slope": "slope of the ratio",
-    "total_next": "sum of the ratio's slopes",
-    "ratio_next": "ratio",
-    "force": "sum of forces on a node",
-    "mantissa": "sum of forces, as an operand",
-    "factor": "1 / mass, weighted",
-    "acceleration": "velocity gained in a step",
-    "v_total": "sum of the velocity's slopes",
-    "v": "velocity",
-    "displacement": "way in a step",
-    "x_total": "sum of the ways",
-    "x": "position",
-}
-"""The variables of `golden.datapath.edge` and `golden.datapath.node` that hold bits for long or multiply, in their
-order, in words."""
-
-NORMALISED = {
-    "d",
-    "square",
-    "inverse",
-    "w",
-    "rate",
-    "stretch",
-    "g",
-    "rho",
-    "sigma",
-    "s",
-    "net",
-    "weighted",
-    "mantissa",
-    "factor",
-}
-"""Those that travel with an exponent: shifted so that they fill their bits, which leaves them no headroom to have."""
 
 
 class Ranges:
@@ -90,7 +37,7 @@ class Ranges:
         self.counts, self.largest, self.formats = {}, {}, {}
 
     def __call__(self, values: dict) -> None:
-        for name in QUANTITIES.keys() & values.keys():
+        for name in MEASURED & values.keys():
             vector = values[name] if isinstance(values[name], list) else [values[name]]
             magnitude = np.abs(np.concatenate([np.atleast_1d(number.raw) for number in vector]))
             q = self.formats.setdefault(name, vector[0].fmt)
@@ -103,17 +50,17 @@ class Ranges:
         return [self._entry(name, units) for name in QUANTITIES if name in self.counts]
 
     def _entry(self, name: str, units: Units) -> dict:
-        q, largest, normalised = self.formats[name], self.largest[name], name in NORMALISED
+        q, largest, quantity = self.formats[name], self.largest[name], QUANTITIES[name]
         full = 1 << q.width - q.signed
-        one, unit = (1.0, "") if normalised else in_si(q.unit, units)
+        one, unit = (1.0, "") if quantity.normalised else in_si(q.unit, units)
         return {
             "quantity": name,
-            "words": QUANTITIES[name],
+            "words": quantity.words,
             "format": str(q),
             "bits": q.width,
             "signed": q.signed,
-            "normalised": normalised,
-            "largest": None if normalised else largest * q.lsb * one,
+            "normalised": quantity.normalised,
+            "largest": None if quantity.normalised else largest * q.lsb * one,
             "unit": unit,
             "headroom_bits": round(log2(full / largest), 3) if largest else None,
             "counts": self.counts[name].tolist(),
