@@ -5,7 +5,7 @@ from golden_objects import phase, scene
 
 from golden.datapath import records
 from golden.datapath.formats import Formats
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.mesh.mesh import Mesh, box, rectangle
 from golden.numbers.qformat import Q
 from golden.physics.materials import PRESETS
@@ -58,7 +58,7 @@ def random_record(rng, record: dict[str, Q], shape=()):
     return {name: random_raw(rng, q, shape) for name, q in record.items()}
 
 
-def random_image(rng, fmt=None, nodes=12, edges=60, materials=8, tables=3, true_inverse=True) -> Image:
+def random_image(rng, fmt=None, nodes=12, edges=60, materials=8, tables=3, true_inverse=True) -> MemoryImage:
     """Return an image that the circuit accepts and no scene makes: nearly everything in it saturates something.
 
     Unless ``true_inverse``, its table of 1 / sqrt(q) is random as well, half of it as large as possible.
@@ -72,7 +72,7 @@ def random_image(rng, fmt=None, nodes=12, edges=60, materials=8, tables=3, true_
         for name in material:  # shifts that make something of the product, more often than not
             if name.endswith("shift") and rng.random() < 0.6:
                 material[name] = rng.integers(-4, 24)
-    image = Image(
+    image = MemoryImage(
         formats=fmt,
         velocity_shift=int(rng.integers(0, 20)),
         x=random_raw(rng, fmt.position, (nodes, 3)),

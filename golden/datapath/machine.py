@@ -8,7 +8,7 @@ import numpy as np
 
 from golden.datapath import records
 from golden.datapath.edge import edge
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.datapath.node import node
 from golden.datapath.rk4 import RK4
 from golden.datapath.tables import Tables
@@ -17,7 +17,7 @@ from golden.numbers.qformat import BIT
 
 
 class Machine:
-    """The bit-exact model of the circuit, loaded with an `Image`.
+    """The bit-exact model of the circuit, loaded with an `MemoryImage`.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Machine:
         How often each quantity saturated (or an edge became too short), by name.
     """
 
-    def __init__(self, image: Image, watch: Callable[[dict], object] | None = None):
+    def __init__(self, image: MemoryImage, watch: Callable[[dict], object] | None = None):
         self.image, self.faults, self._watch = image, Counter(), watch
         self._fmt = image.formats
         self._tables = Tables(self._fmt, image.inverse, image.damper)
@@ -53,7 +53,7 @@ class Machine:
         self.v = v
         self.refresh()
 
-    def take(self, image: Image):
+    def take(self, image: MemoryImage):
         """Go on with an image that differs in materials, natural lengths and ratios."""
         self.image, self.ratio = image, image.ratio.copy()
         self._tables = Tables(self._fmt, image.inverse, image.damper)

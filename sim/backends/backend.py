@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, ClassVar
 
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.physics.scene import Scene
 from sim.backends.machine import FloatMachine, Machine
 from sim.backends.witness import Witness
@@ -97,6 +97,6 @@ class IntegerBackend(Backend):
     def check_room(self, encoded: EncodedScene) -> None:
         """Raise `InputError` for a scene that is too large."""
 
-    def witness(self, image: Image) -> Witness | None:
+    def witness(self, image: MemoryImage) -> Witness | None:
         """Return what computes single steps again, if its machine has to be checked so."""
         return None

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from hw.map.control import Control
 from hw.map.memory_map import NODE_FORCE, NODE_STATE, Map, Region
 from hw.parameters import Parameters
@@ -64,7 +64,7 @@ class CircuitMachine:
         If the circuit is too small for the image.
     """
 
-    def __init__(self, image: Image, circuit: Circuit, verify: Callable[[list[Write]], object] | None = None):
+    def __init__(self, image: MemoryImage, circuit: Circuit, verify: Callable[[list[Write]], object] | None = None):
         self._program = Program(image, circuit.parameters)
         self._map, self._formats = Map(circuit.parameters), image.formats
         self.circuit, self.parameters = circuit, circuit.parameters
@@ -81,7 +81,7 @@ class CircuitMachine:
         self.circuit.write(self._program.start(v))
         self.v = v
 
-    def take(self, image: Image):
+    def take(self, image: MemoryImage):
         """Go on with an image that differs in materials, natural lengths and ratios."""
         self._program = Program(image, self.circuit.parameters)
         self.circuit.write(self._program.materials())

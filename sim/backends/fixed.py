@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from golden.datapath import machine as golden
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.support.errors import InputError
 from sim.backends.backend import IntegerBackend
 from sim.backends.machine import Machine
@@ -43,6 +43,6 @@ class FixedBackend(IntegerBackend):
 
             yield NativeMachine(encoded.image)
 
-    def witness(self, image: Image) -> Witness | None:
+    def witness(self, image: MemoryImage) -> Witness | None:
         """Return the NumPy model of an image, beside the compiled one."""
         return None if self.engine == NUMPY else Witness(image)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.physics.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Machine(Protocol):
     def restart(self, v: np.ndarray) -> None:
         """Go on with these velocities, and take up changes of the image's loads and masses."""
 
-    def take(self, image: Image) -> None:
+    def take(self, image: MemoryImage) -> None:
         """Go on with an image that differs in materials, natural lengths and ratios."""
 
 

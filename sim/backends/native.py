@@ -10,7 +10,7 @@ from numpy.ctypeslib import ndpointer
 
 from golden.datapath import records
 from golden.datapath.formats import Formats
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.datapath.rk4 import RK4
 from sim.backends.native_build import library
 from sim.backends.native_source import sources
@@ -43,7 +43,7 @@ class NativeMachine:
         If the image names a node, a material or a table that it doesn't have.
     """
 
-    def __init__(self, image: Image):
+    def __init__(self, image: MemoryImage):
         self.image, self.faults = image, Counter()
         self.x, self.v, self.ratio = image.x.copy(), image.v.copy(), image.ratio.copy()
         self.force = np.zeros_like(image.x)
@@ -57,7 +57,7 @@ class NativeMachine:
         self.v = v
         self.refresh()
 
-    def take(self, image: Image):
+    def take(self, image: MemoryImage):
         """Go on with an image that differs in materials, natural lengths and ratios."""
         self.image, self.ratio = image, image.ratio.copy()
         self._damper = words(image.damper, records.damper_word(image.formats))

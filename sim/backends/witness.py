@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from golden.datapath import machine as golden
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.support.errors import InternalError
 from sim.backends.machine import Machine
 
@@ -13,7 +13,7 @@ from sim.backends.machine import Machine
 class Witness:
     """Computes single steps of another machine again and insists on the same bits."""
 
-    def __init__(self, image: Image):
+    def __init__(self, image: MemoryImage):
         self._model = golden.Machine(image)
 
     def step(self, machine: Machine, number: int) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from golden.datapath import records
 from golden.datapath.edge import axis_of, voigt_length
 from golden.datapath.formats import Formats
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.datapath.tables import Tables
 from golden.numbers.qarray import QArray
 from golden.numbers.qformat import Q
@@ -28,7 +28,7 @@ class EncodedScene:
 
     scene: Scene
     units: Units
-    image: Image
+    image: MemoryImage
     node_order: np.ndarray
     edge_order: np.ndarray
 
@@ -106,7 +106,7 @@ def encode(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarr
     materials, damper = encode_materials(scene.materials, units, formats)
     x = raw_vectors((scene.mesh.points[node_order] - units.centre) / units.size, formats.position)
     a0 = np.array([ratio(m.a0, formats) for m in scene.materials], np.int64)[scene.edge_material[edge_order]]
-    image = Image(
+    image = MemoryImage(
         formats=formats,
         velocity_shift=units.velocity_shift,
         x=x,
@@ -142,7 +142,7 @@ def stack(tables: list[dict[str, np.ndarray]], formats: Formats) -> dict[str, np
     return {name: np.stack([t[name] for t in tables or [blank]]) for name in blank}
 
 
-def natural_length(image: Image) -> np.ndarray:
+def natural_length(image: MemoryImage) -> np.ndarray:
     """Return (E,) L = a0 l from the datapath's own product: an object at rest is at rest in the integers too."""
     fmt = image.formats
     tables = Tables(fmt, image.inverse, image.damper)

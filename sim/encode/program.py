@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from golden.datapath import records
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.scene.capacity import most_at_a_node
 from golden.support.errors import InputError
 from hw.map.control import Control
@@ -26,7 +26,7 @@ class Program:
         If the circuit is too small for the image, or made for other formats, or a node has too many edges.
     """
 
-    def __init__(self, image: Image, parameters: Parameters):
+    def __init__(self, image: MemoryImage, parameters: Parameters):
         self.image, self.parameters, self._map = image, parameters, Map(parameters)
         self.rows = -(-len(image.edges) // parameters.lanes)
         for name, used, room in (

@@ -7,7 +7,7 @@ index in the list plus the longest delay of the entries before it.
 
 import numpy as np
 
-from golden.datapath.image import Image
+from golden.datapath.memory_image import MemoryImage
 from golden.datapath.rk4 import RK4
 from golden.physics.scene import Scene
 from golden.support.errors import InputError
@@ -30,7 +30,7 @@ class Wavefront:
         If the circuit is too small for the object (`sim.encode.program.Program`).
     """
 
-    def __init__(self, image: Image, parameters: Parameters, latencies: Latencies | None = None):
+    def __init__(self, image: MemoryImage, parameters: Parameters, latencies: Latencies | None = None):
         program = Program(image, parameters)
         self.latencies = latencies or Latencies.of(parameters)
         self.rows, self.edges, self._lanes = program.rows, len(image.edges), parameters.lanes

@@ -9,7 +9,7 @@ from golden.datapath.tables import inverse_table
 
 
 @dataclass(eq=False)
-class Image:
+class MemoryImage:
     """N nodes, E edges, M materials, T damper tables; vectors always have three components.
 
     The order of nodes and edges is the order in which the circuit works; it changes the speed, never the result.
