@@ -120,7 +120,7 @@ def figures_of_the_method():
         f"below {power(BOUND[False])} of the\nobject's size, and {power(BOUND[True])} with dampers",
         f"holds {PARAMETERS.nodes} nodes and {PARAMETERS.edges} edges, {PARAMETERS.materials} materials, and "
         f"{PARAMETERS.tables} of them",
-        f"no more than {capacity.most_at_a_node(FORMATS)} edges may meet at a node",
+        f"no more than {capacity.max_edges_at_node(FORMATS)} edges may meet at a node",
     ]
 
 
@@ -137,7 +137,7 @@ def figures_of_the_circuit():
         f"sums {cycles['issue to its force on both nodes']} cycles after its issue",
         f"another {len(node)} multipliers",
         f"copy {cycles[UPDATED]} cycles later",
-        f"wide enough for {capacity.most_at_a_node(FORMATS)}\nedges",
+        f"wide enough for {capacity.max_edges_at_node(FORMATS)}\nedges",
         f"At least {cycles['an edge to the next edge of the same node, at least']} cycles lie",
         f"{busiest} cycles are {busiest / 100:.1f} microseconds",
         f"State words have {FORMATS.state} bits",

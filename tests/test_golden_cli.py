@@ -82,16 +82,16 @@ def test_boards_that_are_too_small_say_by_how_much(capsys):
 def test_capacities_are_those_of_the_boards_circuits():
     from hw.boards import board as boards
 
-    for board in capacity.boards():
+    for board in capacity.load_capacities():
         parameters = boards.load(board.board).parameters()
         assert (board.nodes, board.edges) == (parameters.nodes, parameters.edges)
-    assert [board.board for board in capacity.boards()] == boards.names()
+    assert [board.board for board in capacity.load_capacities()] == boards.names()
 
 
 def test_a_boards_file_without_capacities_is_named(tmp_path):
     (tmp_path / "b.toml").write_text("[circuit]\nnodes = 3\n")
     with pytest.raises(InputError) as error:
-        capacity.boards(tmp_path)
+        capacity.load_capacities(tmp_path)
     assert str(error.value) == (
         f"{tmp_path / 'b.toml'}: circuit.nodes and circuit.edges must be whole numbers in a TOML file ('edges')"
     )
@@ -99,7 +99,7 @@ def test_a_boards_file_without_capacities_is_named(tmp_path):
 
 def test_a_sum_of_forces_of_so_many_edges_cannot_overflow():
     formats = Formats()
-    most, worst = capacity.most_at_a_node(formats), -formats.force.raw_min
+    most, worst = capacity.max_edges_at_node(formats), -formats.force.raw_min
     assert most * worst <= formats.accumulator.raw_max < (most + 1) * worst
 
 
@@ -130,7 +130,8 @@ def test_a_material_that_nothing_limits_says_so():
     found = inspection.inspect(block.mesh, replace(block, materials=(slack,)))
     assert found["stable_dt"] == {"jelly": None}
     json.dumps(found, allow_nan=False)
-    assert any(line.split() == ["stable", "dt", "any", "of", "jelly"] for line in inspection.lines("block", found))
+    lines = inspection.report_lines("block", found)
+    assert any(line.split() == ["stable", "dt", "any", "of", "jelly"] for line in lines)
 
 
 @pytest.mark.parametrize("suffix", ["vtu", "vtk", "msh"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sim_objects import MATERIALS
 
-from golden.physics.switch import switched
+from golden.physics.switch import switch_material
 
 
 def force(m, length, rate, ratio, natural):
@@ -26,7 +26,7 @@ def state(rng, m, count=200):
 def test_the_force_does_not_jump(names, rng):
     old, new = (MATERIALS[name] for name in names)
     length, rate, ratio, natural = state(rng, old)
-    after = switched(old, new, length, rate, ratio, natural)
+    after = switch_material(old, new, length, rate, ratio, natural)
     assert (new.a_min <= after[0]).all() and (after[0] <= new.a_max).all()
     if new.k:
         before = force(old, length, rate, ratio, natural)
@@ -40,17 +40,17 @@ def test_to_the_same_material_changes_nothing(name, rng):
     length, rate, ratio, natural = state(rng, m)
     if not m.k:
         natural = ratio * length
-    after = switched(m, m, length, rate, ratio, natural)
+    after = switch_material(m, m, length, rate, ratio, natural)
     assert np.allclose(after[0], ratio) and np.allclose(after[1], natural, atol=1e-10)
 
 
 def test_a_ratio_at_its_limit_begins_anew():
     old, new = MATERIALS["viscoelastic"], MATERIALS["rheological-force"]
-    ratio, natural = switched(old, new, 0.02, 0.0, 1.0, 0.02)
+    ratio, natural = switch_material(old, new, 0.02, 0.0, 1.0, 0.02)
     assert ratio == new.a0 and natural == pytest.approx(new.a0 * 0.02)  # without a force it is at rest as it is
 
 
 def test_without_a_spring_the_force_is_that_of_the_dampers():
     clay = MATERIALS["plastic"]
-    ratio, natural = switched(MATERIALS["viscoelastic"], clay, 0.02, 0.1, 1.0, 0.03)
+    ratio, natural = switch_material(MATERIALS["viscoelastic"], clay, 0.02, 0.1, 1.0, 0.03)
     assert force(clay, 0.02, 0.1, ratio, natural) == pytest.approx(clay.c1 / 2 * 0.1)

@@ -9,7 +9,7 @@ import pytest
 from environment import ROOT
 from golden.physics.model import Model, dot, norm, simulate
 from golden.physics.stability import largest_dt
-from golden.scene.capacity import boards
+from golden.scene.capacity import load_capacities
 from golden.scene.load import load
 from sim.results.face import watched
 
@@ -157,8 +157,8 @@ def test_irregular_objects_come_to_rest_and_fit(name):
     late = trajectory.x[trajectory.t >= trajectory.t[-1] - 0.1 * scene.phases[-1].steps * scene.dt]
     assert np.ptp(late, axis=0).max() < 0.03 * (start - pressed)
     assert scene.mesh.quality().min() >= {2: 0.5, 3: 0.3}[scene.dim]
-    for board in (board for board in boards() if board.nodes >= 512 and board.edges >= 4096):
-        assert not board.lacks(scene.mesh)
+    for board in (board for board in load_capacities() if board.nodes >= 512 and board.edges >= 4096):
+        assert not board.shortfall(scene.mesh)
 
 
 def test_ring():

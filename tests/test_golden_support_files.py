@@ -2,7 +2,7 @@
 
 import pytest
 
-from golden.support.files import replaced, write_text
+from golden.support.files import atomic_file, write_text
 
 
 def test_a_file_is_whole_or_not_there(tmp_path):
@@ -11,7 +11,7 @@ def test_a_file_is_whole_or_not_there(tmp_path):
         write_text(path, "\ud800")
     assert not list(tmp_path.iterdir())
     write_text(path, "old")
-    with pytest.raises(KeyboardInterrupt), replaced(path) as file:
+    with pytest.raises(KeyboardInterrupt), atomic_file(path) as file:
         file.write(b"new")
         file.flush()
         assert path.read_text() == "old"
@@ -24,7 +24,7 @@ def test_a_file_is_whole_or_not_there(tmp_path):
 def test_two_may_write_the_same_file_at_a_time(tmp_path):
     """As the runs of two seeds do: the last one's is left, whole."""
     path = tmp_path / "constraints.lpf"
-    with replaced(path) as file:
+    with atomic_file(path) as file:
         file.write(b"last")
         write_text(path, "first")
         assert path.read_text() == "first"

@@ -99,7 +99,7 @@ def test_the_force_does_not_jump(other):
         model.step()
     model.v[scene.phases[1].held] = 0
     before, _ = model.edges(model.x, model.v, model.a)
-    model.become(scene.phases[1].materials)
+    model.change_materials(scene.phases[1].materials)
     after, _ = model.edges(model.x, model.v, model.a)
     assert np.abs(after - before).max() < 1e-9 * np.abs(before).max()
 

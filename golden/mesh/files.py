@@ -1,4 +1,4 @@
-"""Points and cells from mesh files and to them. The only place that knows meshio."""
+"""Read and write mesh files. This is the only module that uses meshio."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from pathlib import Path
 import numpy as np
 
 from golden.support.errors import InputError
-from golden.support.files import replacing
+from golden.support.files import atomic_path
 
 FORMATS = {".vtu": "vtu", ".vtk": "vtk", ".msh": "gmsh"}
-"""By suffix, those that are written: they hold triangles and tetrahedra with all digits."""
+"""Formats that are written, by suffix: they hold triangles and tetrahedra with all digits."""
 CELLS = {2: "line", 3: "triangle", 4: "tetra"}
-"""What meshio calls cells, by their number of corners."""
+"""Names of cells in meshio, by their number of corners."""
 FIRST_ORDER = "mesh the whole object with first-order triangles or with first-order tetrahedra"
 
 
 def read(path) -> tuple[np.ndarray, np.ndarray]:
-    """Points (N, 2) and triangles (M, 3), or points (N, 3) and tetrahedra (M, 4), in the file's units.
+    """Return points (N, 2) and triangles (M, 3), or points (N, 3) and tetrahedra (M, 4), in the file's units.
 
-    Raises `InputError` as `golden.mesh.mesh.read` says.
+    Raises `InputError` as `golden.mesh.mesh.read` does.
     """
     points, cells = _read(Path(path))
     kind, boundary = "tetra", {"triangle", "line", "vertex"}
@@ -55,13 +55,13 @@ def write(path, points: np.ndarray, cells: list[np.ndarray], point_data=None, ce
     inside = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
     blocks = [(CELLS[block.shape[1]], block) for block in cells]
     mesh = meshio.Mesh(inside, blocks, point_data=point_data, cell_data=cell_data)
-    with replacing(path) as partial:
+    with atomic_path(path) as partial:
         meshio.write(partial, mesh, file_format=FORMATS[path.suffix])
 
 
 def _read(path: Path) -> tuple[np.ndarray, dict[str, list[np.ndarray]]]:
-    """Points and, for each type of cell in the file, its blocks."""
-    import meshio  # here, because only scenes with a mesh file need it and it loads slowly
+    """Return the points, and the blocks of each type of cell in the file."""
+    import meshio  # imported here because it loads slowly and few scenes have a mesh file
 
     if not path.is_file():
         raise InputError(f"file must be an existing mesh file, not {path}")

@@ -10,20 +10,20 @@ from golden.support.errors import InputError
 
 
 def rectangle(nodes, size) -> tuple[np.ndarray, np.ndarray]:
-    """Points (N, 2) and triangles (M, 3) of `golden.mesh.mesh.rectangle`."""
+    """Return the points (N, 2) and triangles (M, 3) of `golden.mesh.mesh.rectangle`."""
     points, corner, parity = _grid(nodes, size, 2)
     a, b, c, d = corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)
     return points, _cut(parity, [(a, b, d), (a, d, c)], [(a, b, c), (b, d, c)])
 
 
 def box(nodes, size, tetrahedra: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points (N, 3) and tetrahedra (M, 4) of `golden.mesh.mesh.box`."""
+    """Return the points (N, 3) and tetrahedra (M, 4) of `golden.mesh.mesh.box`."""
     if isinstance(tetrahedra, bool) or tetrahedra not in (5, 6):
         raise InputError(f"tetrahedra must be 5 or 6, not {tetrahedra!r}")
     points, corner, parity = _grid(nodes, size, 3)
     o, x, y, z = corner(0, 0, 0), corner(1, 0, 0), corner(0, 1, 0), corner(0, 0, 1)
     xy, xz, yz, xyz = corner(1, 1, 0), corner(1, 0, 1), corner(0, 1, 1), corner(1, 1, 1)
-    if tetrahedra == 6:  # one for each way from o to xyz along the axes
+    if tetrahedra == 6:  # one for each path from o to xyz along the axes
         even = odd = [
             (o, x, xy, xyz),
             (o, x, xz, xyz),
@@ -39,7 +39,7 @@ def box(nodes, size, tetrahedra: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _grid(nodes, size, dim: int):
-    """Points, the function that gives for an offset the node at that corner of every grid cell, and parities.
+    """Return the points, a function from a corner's offset to that node of every grid cell, and the cells' parities.
 
     The first axis runs fastest in the order of the points.
     """
@@ -56,7 +56,7 @@ def _grid(nodes, size, dim: int):
 
 
 def _cut(parity: np.ndarray, even, odd) -> np.ndarray:
-    """Cells of all grid cells, cut by their parity, in the order of the grid cells."""
+    """Return the cells of all grid cells, cut by parity, in the order of the grid cells."""
     even, odd = np.array(even), np.array(odd)  # (cells of a grid cell, corners, grid cells)
     cells = np.where(parity == 0, even, odd)
     return cells.transpose(2, 0, 1).reshape(-1, cells.shape[1])

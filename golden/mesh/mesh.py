@@ -1,4 +1,4 @@
-"""Meshes of triangles (2-D) or tetrahedra (3-D): checked, with every edge once, from grids, files and Delaunay."""
+"""Meshes of triangles (2-D) or tetrahedra (3-D), with every edge once, checked."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from golden.mesh import files as meshfile
 from golden.mesh.quality import radius_ratio, signed_measure
 from golden.support.errors import InputError
 
-SAME = 1e-6  # of the object's size: points that are nearer to each other are at the same place
+COINCIDENT = 1e-6  # of the object's size: points nearer to each other than this are one
 FLAT = 1e-12  # a cell smaller than this part of its longest edge to the power of dim has no area or volume
 
 
@@ -24,7 +24,7 @@ FLAT = 1e-12  # a cell smaller than this part of its longest edge to the power o
 class Mesh:
     """Points (N, dim) in m; cells (M, dim + 1) and edges (E, 2) of node indices.
 
-    Every edge is there once, with i < j, in ascending order; nodes keep the order they were given in. Raises
+    Every edge occurs once, with i < j, in ascending order; nodes keep the order they were given in. Raises
     `InputError` when a point or an edge cannot belong to an object. Build one with `from_cells`, `rectangle`,
     `box`, `filled` or `read`.
     """
@@ -46,7 +46,7 @@ class Mesh:
                 f"points must all belong to a cell, but point {isolated[0]} does not: remove it "
                 f"({len(isolated)} of {n} are isolated)"
             )
-        if pairs := KDTree(self.points).query_pairs(SAME * self.size):
+        if pairs := KDTree(self.points).query_pairs(COINCIDENT * self.size):
             i, j = min(pairs)
             raise InputError(
                 f"points must all differ, but {i} and {j} are at the same place: "
@@ -63,39 +63,39 @@ class Mesh:
         return float(np.ptp(self.points, axis=0).max())
 
     def measure(self) -> np.ndarray:
-        """(M,) area (m^2) or volume (m^3) of each cell."""
+        """Return the area (m^2) or volume (m^3) of each cell (M,)."""
         return np.abs(signed_measure(self.points[self.cells]))
 
     def quality(self) -> np.ndarray:
-        """(M,) radius ratio of each cell, 1 for equal sides to 0 for a flat one: `golden.mesh.quality`."""
+        """Return the radius ratio of each cell (M,), 1 for equal sides to 0 for a flat one: `golden.mesh.quality`."""
         return np.abs(radius_ratio(self.points[self.cells]))
 
     def lengths(self) -> np.ndarray:
-        """(E,) m: how long each edge is."""
+        """Return the length of each edge (E,) in m."""
         return np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1)
 
     def cell_edges(self) -> np.ndarray:
-        """(M, 3 or 6) indices of each cell's edges."""
+        """Return the indices of each cell's edges (M, 3 or 6)."""
         count = len(self.points)
         number = self.edges @ [count, 1]  # ascending, because the edges are in order
         pairs = np.sort(self.cells[:, list(combinations(range(self.cells.shape[1]), 2))], axis=2)
         return np.searchsorted(number, pairs @ [count, 1])
 
     def lumped_mass(self, density) -> np.ndarray:
-        """(N,) kg: each cell's mass shared by its nodes; `density`, one or (M,), in kg/m^2 or kg/m^3."""
+        """Return the nodes' masses (N,) in kg, sharing each cell's; ``density`` (one or (M,)) in kg/m^2 or kg/m^3."""
         corners = self.cells.shape[1]
         share = np.repeat(density * self.measure() / corners, corners)
         return np.bincount(self.cells.ravel(), share, len(self.points))
 
     def components(self) -> tuple[int, np.ndarray]:
-        """Number of parts that no edge joins, and (N,) the part each node belongs to, counted from 0."""
+        """Return the number of parts that no edge joins, and the index of each node's part (N,)."""
         n = len(self.points)
         adjacency = coo_array((np.ones(len(self.edges)), tuple(self.edges.T)), shape=(n, n))
         return connected_components(adjacency, directed=False)
 
 
 def from_cells(points, cells) -> Mesh:
-    """Mesh of the given triangles or tetrahedra; those of negative orientation are reordered.
+    """Return the mesh of the given triangles or tetrahedra; those of negative orientation are reordered.
 
     Raises `InputError` for a node index out of range, a cell given twice or without area or volume, more than two
     cells at a side, and as `Mesh` does.
@@ -120,16 +120,16 @@ def from_cells(points, cells) -> Mesh:
 
 
 def rectangle(nodes, size) -> Mesh:
-    """Grid of (nx, ny) nodes on [0, width] x [0, height] (m), x fastest.
+    """Return a grid of (nx, ny) nodes on [0, width] x [0, height] (m), x fastest.
 
-    The diagonals alternate like a chessboard's fields, so that an even number of cells is its own mirror
+    The diagonals alternate like the squares of a chessboard, so that an even number of cells is its own mirror
     image. Raises `InputError` for fewer than 2 nodes a side or a size that is not positive.
     """
     return from_cells(*grids.rectangle(nodes, size))
 
 
 def box(nodes, size, tetrahedra: int = 5) -> Mesh:
-    """Grid of (nx, ny, nz) nodes on [0, x] x [0, y] x [0, z] (m), x fastest, of 5 or 6 tetrahedra a cell.
+    """Return a grid of (nx, ny, nz) nodes on [0, x] x [0, y] x [0, z] (m), x fastest, of 5 or 6 tetrahedra a cell.
 
     Five: one in the middle and four at the corners, neighbours mirrored so that their faces match. Six:
     around the same diagonal in every cell. Raises `InputError` as `rectangle` does, and for another number of
@@ -139,16 +139,15 @@ def box(nodes, size, tetrahedra: int = 5) -> Mesh:
 
 
 def filled(kind: str, **parameters) -> Mesh:
-    """Irregular mesh of a body, one of `golden.mesh.bodies.KINDS` with its parameters; raises `InputError` as it
-    does."""
+    """Return an irregular mesh of one of `golden.mesh.bodies.KINDS`, with that function's parameters and errors."""
     return from_cells(*bodies.KINDS[kind](**parameters))
 
 
 def read(path, scale: float = 1.0) -> Mesh:
-    """Mesh of the triangles or the tetrahedra in a file that meshio reads; `scale` makes its unit metres.
+    """Return the mesh of a file of triangles or tetrahedra that meshio reads; ``scale`` is the file's unit in m.
 
-    Beside tetrahedra their boundary (triangles, lines, vertices, as Gmsh writes) is passed over, and so are
-    the lines and vertices beside triangles, which must lie in one plane of constant z. Raises `InputError`
+    The boundary of tetrahedra (triangles, lines, vertices, as Gmsh writes them) is ignored, and so are the lines
+    and vertices of triangles, which must lie in one plane of constant z. Raises `InputError`
     for a file that is missing, unreadable or holds anything else, and as `from_cells` does.
     """
     if type(scale) not in (int, float) or not isfinite(scale) or scale <= 0:
@@ -158,7 +157,7 @@ def read(path, scale: float = 1.0) -> Mesh:
 
 
 def _check_sides(cells: np.ndarray) -> None:
-    """A side is between two cells or outside: more of them overlap, and their mass would count twice."""
+    """Refuse a side of more than two cells: they overlap, and their mass would count twice."""
     sides = np.sort(np.concatenate([np.delete(cells, n, axis=1) for n in range(cells.shape[1])]), axis=1)
     found, count = np.unique(sides, axis=0, return_counts=True)
     if (many := np.flatnonzero(count > 2)).size:
@@ -183,7 +182,7 @@ def _check_indices(name: str, indices: np.ndarray, n: int) -> None:
 
 
 def _duplicate(rows: np.ndarray) -> tuple[int, int] | None:
-    """Indices of two equal rows, if there are any."""
+    """Return the indices of two equal rows, if there are any."""
     order = np.lexsort(rows.T)
     same = np.flatnonzero((rows[order[1:]] == rows[order[:-1]]).all(axis=1))
     return (int(order[same[0]]), int(order[same[0] + 1])) if len(same) else None

@@ -1,4 +1,4 @@
-"""How good triangles and tetrahedra are: the radius ratio."""
+"""Quality of triangles and tetrahedra: the radius ratio."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 
 
 def signed_measure(corners: np.ndarray) -> np.ndarray:
-    """(M,) area or volume of cells whose corners are (M, dim + 1, dim), negative where the orientation is."""
+    """Return the area or volume (M,) of cells with corners (M, dim + 1, dim), negative for a negative orientation."""
     sides = corners[:, 1:] - corners[:, :1]
     return np.linalg.det(sides) / factorial(sides.shape[1])
 
 
 def radius_ratio(corners: np.ndarray) -> np.ndarray:
-    """(M,) dim times radius of the inscribed circle or sphere, by radius of the circumscribed one.
+    """Return dim times the radius of the inscribed circle or sphere over the radius of the circumscribed one (M,).
 
-    The corners are (M, dim + 1, dim). It is 1 for equal sides and 0 for a cell that is flat, a sliver as well as a
-    needle; negative where the orientation is.
+    The corners are (M, dim + 1, dim). The ratio is 1 for equal sides and 0 for a flat cell, be it a sliver or a
+    needle; it is negative for a negative orientation.
     """
     dim = corners.shape[2]
     measure = signed_measure(corners)
@@ -44,6 +44,6 @@ def _distance(corners, i, j) -> np.ndarray:
 
 
 def _area(triangles: np.ndarray) -> np.ndarray:
-    """(M,) area of triangles (M, 3, 3) in space."""
+    """Return the area (M,) of triangles (M, 3, 3) in space."""
     sides = triangles[:, 1:] - triangles[:, :1]
     return np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2

@@ -42,14 +42,14 @@ class Material:
 
 
 def viscoelastic(name: str, k: float, c1: float) -> Material:
-    """A Voigt part alone: the damper is rigid and the ratio stays 1, so the object returns to its shape."""
+    """Return a Voigt part alone: the damper is rigid and the ratio stays 1, so the object returns to its shape."""
     check_number("k", k)
     check_number("c1", c1, positive=False)
     return Material(name, k, c1, Linear(inf), 1.0, 1.0, 1.0)
 
 
 def plastic(name: str, c_damper: float) -> Material:
-    """A damper alone, as two equal ones in series: c1 c2 / (c1 + c2) = c_damper, equation (6).
+    """Return a damper alone, as two equal ones in series: c1 c2 / (c1 + c2) = c_damper, equation (6).
 
     The ratio has no effect on the force (k = 0) and keeps its value a0 = c2 / (c1 + c2).
     """
@@ -61,7 +61,7 @@ def plastic(name: str, c_damper: float) -> Material:
 def rheological(
     name: str, k: float, c1: float, c2: float, a_min: float = 0.0, a_max: float = 1.0, a0: float = 0.5
 ) -> Material:
-    """Voigt part and damper in series: comes back part of the way."""
+    """Return a Voigt part and a damper in series: the object comes back part of the way."""
     check_number("k", k)
     check_number("c1", c1, positive=False)
     check_number("c2", c2)
@@ -81,7 +81,7 @@ def rheological_force(
     a_max: float = 1.0,
     a0: float = 0.5,
 ) -> Material:
-    """A rheological material whose damper is equation (7): stiff up to the force f1, soft from f2 on."""
+    """Return a rheological material whose damper is equation (7): stiff up to the force f1, soft from f2 on."""
     check_number("k", k)
     check_number("c1", c1, positive=False)
     damper = _exponential(f1, f2, c_max, c_min)
@@ -90,7 +90,7 @@ def rheological_force(
 
 
 def plastic_force(name: str, c1: float, f1: float, f2: float, c_max: float, c_min: float) -> Material:
-    """A damper that follows equation (7): with c1 >> c2, equation (8), the two in series behave as c2 alone.
+    """Return a damper that follows equation (7): with c1 >> c2, equation (8), the two in series behave as c2 alone.
 
     The ratio has no effect on the force (k = 0); a0 is the value that stays constant at small forces.
     """
@@ -110,7 +110,7 @@ PRESETS = {
 
 
 def _exponential(f1: float, f2: float, c_max: float, c_min: float) -> Damper:
-    """Return the damper of equation (7), which is linear if its ends are equal."""
+    """Return the damper of equation (7), a linear one if c_max and c_min are equal."""
     damper = Exponential(f1, f2, c_max, c_min)
     return Linear(c_max) if c_max == c_min else damper
 

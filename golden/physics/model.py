@@ -9,11 +9,11 @@ import numpy as np
 
 from golden.physics.materials import Material
 from golden.physics.scene import Phase, Scene
-from golden.physics.switch import switched
+from golden.physics.switch import switch_material
 from golden.physics.trajectory import Trajectory
 from golden.support.errors import InputError
 
-REPORT_EVERY = 200  # steps between two calls of `progress`
+REPORT_EVERY = 200  # steps between two calls of ``progress``
 
 
 class Model:
@@ -24,7 +24,7 @@ class Model:
 
     def __init__(self, scene: Scene):
         self.i, self.j = scene.mesh.edges.T
-        self._consist(scene)
+        self._use_materials(scene)
         ends = np.concatenate([self.j, self.i])[:, None]
         self.component = (ends * scene.dim + np.arange(scene.dim)).ravel()  # where +f u, then -f u, are added
 
@@ -33,8 +33,8 @@ class Model:
         self.L = self.a * norm(self.x[self.j] - self.x[self.i])
         self.begin(scene.phases[0])
 
-    def _consist(self, scene: Scene) -> None:
-        """Take the materials of the scene."""
+    def _use_materials(self, scene: Scene) -> None:
+        """Take the scene's materials."""
         self.scene = scene
         self.k, self.c1 = scene.per_edge(lambda m: m.k), scene.per_edge(lambda m: m.c1)
         self.a_min, self.a_max = scene.per_edge(lambda m: m.a_min), scene.per_edge(lambda m: m.a_max)
@@ -45,16 +45,15 @@ class Model:
             if material.damper.force_dependent
         ]
 
-    def become(self, materials: tuple[Material, ...]) -> None:
-        """Consist of other materials from here on, one for each there was, without a jump in force:
-        `golden.physics.switch`."""
-        _, length, rate = self.motion(self.x, self.v)
+    def change_materials(self, materials: tuple[Material, ...]) -> None:
+        """Replace the materials, one for each there was, without a jump in force: `golden.physics.switch`."""
+        _, length, rate = self.edge_motion(self.x, self.v)
         for number, (old, new) in enumerate(zip(self.scene.materials, materials, strict=True)):
             here = self.scene.edge_material == number
             if old != new:
                 state = (part[here] for part in (length, rate, self.a, self.L))
-                self.a[here], self.L[here] = switched(old, new, *state)
-        self._consist(replace(self.scene, materials=materials))
+                self.a[here], self.L[here] = switch_material(old, new, *state)
+        self._use_materials(replace(self.scene, materials=materials))
 
     def begin(self, phase: Phase) -> None:
         """Put the object under a phase's constraints and loads."""
@@ -66,7 +65,7 @@ class Model:
         self.v[phase.driven] = phase.velocity[phase.driven]
 
     def edge_law(self, length, ldot, a):
-        """Force f (N, > 0 pushes the ends apart) and da/dt (1/s) of the edges, equations (1) to (3) and (7).
+        """Return f (N, > 0 pushes the ends apart) and da/dt (1/s) of the edges, equations (1) to (3) and (7).
 
         Equal forces in the Voigt part and in the damper give f = -rho g and the rate s = sigma g at which the
         damper part, of length (1 - a) l, extends; the latter gives da/dt.
@@ -79,57 +78,57 @@ class Model:
             rho[edges], sigma[edges] = material.rho_sigma(g[edges])
         return -rho * g, ((1 - a) * ldot - sigma * g) / length
 
-    def motion(self, x, v):
-        """Of each edge its direction (E, dim), its length (E,) and dl/dt (E,)."""
+    def edge_motion(self, x, v):
+        """Return the edges' directions (E, dim), lengths (E,) and dl/dt (E,)."""
         d = x[self.j] - x[self.i]
         length = norm(d)
         u = d / length[:, None]
         return u, length, dot(u, v[self.j] - v[self.i])
 
     def along(self, x, v, a):
-        """Of each edge its direction (E, dim), the force along it (E,) and da/dt (E,), as `edge_law` has them."""
-        u, length, rate = self.motion(x, v)
+        """Return the edges' directions (E, dim), and f (E,) and da/dt (E,) as `edge_law` has them."""
+        u, length, rate = self.edge_motion(x, v)
         return u, *self.edge_law(length, rate, a)
 
     def edges(self, x, v, a):
-        """Sum of the edges' forces on each node (N, dim), and da/dt (E,)."""
+        """Return the sum of the edges' forces on each node (N, dim), and da/dt (E,)."""
         u, f, a_rate = self.along(x, v, a)
         push = (f[:, None] * u).ravel()
         force = np.bincount(self.component, np.concatenate([push, -push]), x.size)
         return force.reshape(x.shape), a_rate
 
     def rates(self, x, v, a):
-        """Time derivatives of positions, velocities and ratios."""
+        """Return the time derivatives of positions, velocities and ratios."""
         force, a_rate = self.edges(x, v, a)
         return v, self.mobility * (force + self.external), a_rate
 
-    def moved(self, rates, time):
-        """State after `time` at these rates, the ratios put back into [a_min, a_max]: equation (5)."""
+    def advanced(self, rates, time):
+        """Return the state after ``time`` at these rates, the ratios clamped to [a_min, a_max]: equation (5)."""
         x_rate, v_rate, a_rate = rates
         a = np.minimum(np.maximum(self.a + time * a_rate, self.a_min), self.a_max)
         return self.x + time * x_rate, self.v + time * v_rate, a
 
     def step(self) -> None:
-        """One step of classical fourth-order Runge-Kutta."""
+        """Take one step of classical fourth-order Runge-Kutta."""
         dt = self.scene.dt
         k1 = self.rates(self.x, self.v, self.a)
-        k2 = self.rates(*self.moved(k1, dt / 2))
-        k3 = self.rates(*self.moved(k2, dt / 2))
-        k4 = self.rates(*self.moved(k3, dt))
+        k2 = self.rates(*self.advanced(k1, dt / 2))
+        k3 = self.rates(*self.advanced(k2, dt / 2))
+        k4 = self.rates(*self.advanced(k3, dt))
         mean = [(r1 + 2 * (r2 + r3) + r4) / 6 for r1, r2, r3, r4 in zip(k1, k2, k3, k4, strict=True)]
-        self.x, self.v, self.a = self.moved(mean, dt)
+        self.x, self.v, self.a = self.advanced(mean, dt)
 
     def reaction(self) -> np.ndarray:
-        """(N, dim) N: what supports and driving devices exert on fixed and driven nodes; 0 on free ones."""
+        """Return the forces (N, dim) of supports and driving devices on fixed and driven nodes, 0 on free ones (N)."""
         force, _ = self.edges(self.x, self.v, self.a)
         return np.where(self.held, -(force + self.external), 0)
 
 
 def simulate(scene: Scene, progress: Callable[[int], object] | None = None) -> Trajectory:
-    """Run the scene through its phases and keep its frames; `progress(steps done)` is called every 200 steps.
+    """Run the scene through its phases and keep its frames; ``progress(steps done)`` is called every 200 steps.
 
-    The time step is taken as it is: `golden.physics.stability.check` tells whether it is small enough. Raises
-    `InputError` when the state is no longer finite.
+    The time step is not checked here: `golden.physics.stability.check` does that. Raises `InputError` when the state
+    is no longer finite.
     """
     model = Model(scene)
     wanted = set(scene.frames.tolist())
@@ -138,7 +137,7 @@ def simulate(scene: Scene, progress: Callable[[int], object] | None = None) -> T
     with np.errstate(all="ignore"):
         for phase in scene.phases:
             if phase.materials:
-                model.become(phase.materials)
+                model.change_materials(phase.materials)
             model.begin(phase)
             for _ in range(phase.steps):
                 model.step()
@@ -162,10 +161,10 @@ def _frame(model: Model, step: int):
 
 
 def dot(p, q) -> np.ndarray:
-    """Scalar product of each pair of rows."""
+    """Return the dot product of each pair of rows."""
     return np.einsum("ij,ij->i", p, q)
 
 
 def norm(d) -> np.ndarray:
-    """Length of each row."""
+    """Return the length of each row."""
     return np.sqrt(dot(d, d))

@@ -1,4 +1,4 @@
-"""What is to be simulated, fully resolved: an object, its materials and what is done to it. SI units."""
+"""A resolved scene: an object, its materials and the phases it goes through. SI units."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from golden.physics.materials import Material
 class Phase:
     """A stretch of time with one set of constraints and loads, for N nodes in `dim` dimensions.
 
-    At its start fixed nodes get velocity 0 and driven nodes their prescribed one; a node that is released
-    keeps the velocity it had. No node is both fixed and driven. Before that, other materials take the place of those
-    that were, without a jump in force (`golden.physics.switch`).
+    It starts by replacing the materials, if it brings others, without a jump in force (`golden.physics.switch`). Then
+    fixed nodes get velocity 0 and driven nodes their prescribed one; a released node keeps the velocity it had. No
+    node is both fixed and driven.
     """
 
     name: str
@@ -27,17 +27,17 @@ class Phase:
     velocity: np.ndarray  # (N, dim) m/s, of the driven nodes
     driven: np.ndarray  # (N,) bool
     load: np.ndarray  # (N, dim) N, external force on each node
-    materials: tuple[Material, ...] | None = None  # all of the object's from here on, if others than before
+    materials: tuple[Material, ...] | None = None  # of the whole object from here on; None for the same as before
 
     @property
     def held(self) -> np.ndarray:
-        """(N,) bool: nodes whose motion is prescribed, fixed or driven."""
+        """Nodes whose motion is prescribed, fixed or driven: (N,) bool."""
         return self.fixed | self.driven
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """An object and what happens to it. `golden.scene.load.load` makes one from a file."""
+    """An object and what is done to it. `golden.scene.load.load` makes one from a file."""
 
     name: str
     description: str
@@ -66,20 +66,20 @@ class Scene:
 
     @property
     def end_frames(self) -> np.ndarray:
-        """(P,) int: the frame at the end of each phase."""
+        """Index of the frame at the end of each phase: (P,) int."""
         return np.searchsorted(self.frames, np.cumsum([phase.steps for phase in self.phases]))
 
     @property
     def force_dependent(self) -> bool:
-        """Whether any edge has, at any time, a damper whose coefficient depends on the force."""
+        """True if any edge has, at any time, a damper whose coefficient depends on the force."""
         used = np.unique(self.edge_material)
         return any(materials[m].damper.force_dependent for materials in self.material_sets for m in used)
 
     @property
     def material_sets(self) -> list[tuple[Material, ...]]:
-        """The materials that the object begins with, then those that phases bring."""
+        """Materials at the start, then those that phases bring."""
         return [self.materials, *(phase.materials for phase in self.phases if phase.materials)]
 
     def per_edge(self, parameter: Callable[[Material], float]) -> np.ndarray:
-        """Return the (E,) values of a parameter of the edges' materials, say ``lambda material: material.k``."""
+        """Return the (E,) values of a parameter of the edges' materials, such as ``lambda material: material.k``."""
         return np.array([parameter(material) for material in self.materials], dtype=float)[self.edge_material]

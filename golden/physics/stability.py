@@ -1,4 +1,4 @@
-"""The largest time step at which Runge-Kutta is stable on an object, and which material asks for it.
+"""Largest time step at which Runge-Kutta is stable on an object, and the material that limits it.
 
 Near the shape at rest an edge is linear: with q the change of the Voigt part's length a l,
 
@@ -34,16 +34,16 @@ from golden.physics.scene import Scene
 from golden.support.errors import InputError
 
 HALF_DISC = 2.6  # |R(z)| <= 1 for |z| <= this and Re z <= 0, R the growth of classical Runge-Kutta in a step
-TURNING = 0.8  # edges turn as the object deforms: pressed to half its height it got up to 1.27 times as fast
-DENSE = 30  # unknowns up to which all eigenvalues are as quick as one
+TURNING = 0.8  # margin, because edges turn as the object deforms: pressed to half its height, 1.27 times as fast
+DENSE = 30  # up to so many unknowns, all eigenvalues take no longer than one by iteration
 
 
 def largest_dt(scene: Scene) -> tuple[float, str, str]:
-    """Largest step (s) that is stable in all phases, the material that limits it, and whether by its "stiffness" or
-    its "damping".
+    """Return the largest step (s) that is stable in all phases, the material that limits it, and "stiffness" or
+    "damping", the property that does.
 
-    A damper that depends on the force is taken both as stiff (c_max) and as soft as its law ever gets, the
-    ratios both free and held by their bounds. The step is inf when nothing limits it.
+    A force-dependent damper is taken both at its stiffest (c_max) and at its softest, the ratios both free and held
+    by their bounds. The step is inf when nothing limits it.
     """
     scenes = [replace(scene, materials=materials) for materials in scene.material_sets]
     rate, name, reason = max(
@@ -65,13 +65,13 @@ def check(scene: Scene) -> None:
 
 
 def _held(scene: Scene) -> list[np.ndarray]:
-    """The phases' held nodes, without the phases that hold more than another: they are never faster."""
+    """Return the phases' sets of held nodes, without those that contain another: they are never faster."""
     sets = {phase.held.tobytes(): phase.held for phase in scene.phases}.values()
     return [s for s in sets if not any(o is not s and (o <= s).all() for o in sets)]
 
 
 def _laws(scene: Scene):
-    """Per edge (rho c1, kappa, delta), one for each extreme of the element's behaviour; equal ones once.
+    """Return (rho c1, kappa, delta) per edge for each extreme of the element's behaviour, without duplicates.
 
     Held by a_min an edge is at its least stiff and its damping at its fastest; held by a_max it is slower
     than that or than with a free ratio. At a_min = 0 no ratio rests: the natural length L pushes it away.
@@ -89,7 +89,7 @@ def _laws(scene: Scene):
 
 
 def _fastest(scene: Scene, free, damping, kappa, delta) -> tuple[float, str, str]:
-    """|eigenvalue| (1/s) of the fastest mode, the material that holds most of it, and the property."""
+    """Return |eigenvalue| (1/s) of the fastest mode, the material with the largest part in it, and the property."""
     b = _projection(scene, free)
     s = diags_array(np.sqrt(kappa)) @ b
     matrix = csr_array(block_array([[-(b.T @ diags_array(damping) @ b), -s.T], [s, -diags_array(delta)]]))
@@ -103,7 +103,7 @@ def _fastest(scene: Scene, free, damping, kappa, delta) -> tuple[float, str, str
 
 
 def _projection(scene: Scene, free) -> csr_array:
-    """B (E, N dim): from velocities times sqrt(mass) of free nodes to dl/dt of edges, initial shape."""
+    """Return B (E, N dim): from velocities times sqrt(mass) of free nodes to dl/dt of edges, in the initial shape."""
     i, j = scene.mesh.edges.T
     d = scene.mesh.points[j] - scene.mesh.points[i]
     u = d / np.linalg.norm(d, axis=1, keepdims=True)
@@ -116,7 +116,7 @@ def _projection(scene: Scene, free) -> csr_array:
 
 
 def _dominant(matrix: csr_array) -> tuple[float, np.ndarray]:
-    """Absolute value and vector of the eigenvalue of largest absolute value."""
+    """Return the largest |eigenvalue| and its vector."""
     n = matrix.shape[0]
     if not matrix.count_nonzero():
         return 0.0, np.zeros(n)

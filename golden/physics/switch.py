@@ -1,4 +1,4 @@
-"""From one material to another while an object is deformed, without a jump in force."""
+"""Another material for a deformed object, without a jump in force."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import numpy as np
 from golden.physics.materials import Material
 
 
-def switched(old: Material, new: Material, length, rate, ratio, natural) -> tuple[np.ndarray, np.ndarray]:
-    """The ratios and natural lengths with which edges of another material carry the force that they carry now.
+def switch_material(old: Material, new: Material, length, rate, ratio, natural) -> tuple[np.ndarray, np.ndarray]:
+    """Return ratios and natural lengths with which edges of the new material carry the force that they carry now.
 
-    The force of equations (1) to (3) is -rho g with g = k (a l - L) + c1 dl/dt. A ratio stays where it is strictly
-    within the new material's limits, and is the new a0 where it isn't; then L follows from the force. Without a spring
-    (k = 0) nothing can hold a force at rest: L is a l, and the force is what the new dampers give.
+    The force of equations (1) to (3) is -rho g with g = k (a l - L) + c1 dl/dt. A ratio strictly within the new
+    material's limits is kept, any other becomes the new a0; then L follows from the force. Without a spring (k = 0)
+    no force can be kept at rest: L is a l, and the force is what the new dampers give.
 
     Parameters
     ----------

@@ -1,13 +1,13 @@
-"""What a run leaves: the state at the frames that were kept."""
+"""Trajectory of a run: the state at each frame that was kept."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from golden.support.files import replaced
+from golden.support.files import atomic_file
 
 
 @dataclass(eq=False)
@@ -27,18 +27,19 @@ class Trajectory:
     edges: np.ndarray  # (E, 2)
 
     def save(self, path, **meta) -> None:
-        """Write a NumPy archive with these arrays and `meta` (anything NumPy stores) beside them.
+        """Write a NumPy archive with these arrays and ``meta`` (anything NumPy stores) beside them.
 
-        The file appears whole or not at all. Raises `ValueError` for a `meta` that has the name of an array.
+        The file appears whole or not at all. Raises `ValueError` for a ``meta`` that has the name of an array.
         """
-        arrays = {field.name: getattr(self, field.name) for field in fields(self)}
+        arrays = vars(self)
         if taken := arrays.keys() & meta.keys():
             raise ValueError(f"meta must have names of its own, not {', '.join(sorted(taken))}")
-        with replaced(Path(path)) as file:
+        with atomic_file(Path(path)) as file:
             np.savez_compressed(file, allow_pickle=False, **arrays, **meta)
 
 
 def load(path) -> Trajectory:
-    """The trajectory in a file that `Trajectory.save` wrote; what else is in there stays there."""
+    """Return the trajectory in a file that `Trajectory.save` wrote, without its ``meta``."""
     with open(path, "rb") as file, np.load(file) as archive:  # NumPy leaves a damaged file open
-        return Trajectory(**{field.name: archive[field.name] for field in fields(Trajectory)})
+        names = "t", "x", "v", "a", "reaction", "edges"
+        return Trajectory(*(archive[name] for name in names))

@@ -12,13 +12,13 @@ from golden.mesh.mesh import Mesh
 from golden.physics import dampers
 from golden.physics.materials import Material
 from golden.physics.scene import Phase, Scene
-from golden.support.files import replaced
+from golden.support.files import atomic_file
 
 
 def save(scene: Scene, path) -> None:
     """Write the scene with all of its arrays. The file appears whole or not at all."""
     mesh, phases = scene.mesh, scene.phases
-    with replaced(Path(path)) as file:
+    with atomic_file(Path(path)) as file:
         np.savez_compressed(
             file,
             allow_pickle=False,

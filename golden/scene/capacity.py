@@ -1,4 +1,4 @@
-"""How large an object the circuits of the boards hold, as the boards' files say: the data alone, not the circuit."""
+"""Capacities of the boards' circuits, read from the boards' files."""
 
 from __future__ import annotations
 
@@ -11,19 +11,17 @@ from golden.mesh.mesh import Mesh
 from golden.support.errors import InputError
 from golden.support.paths import BOARDS
 
-FOLDER = BOARDS
-
 
 @dataclass(frozen=True)
 class Capacity:
-    """What one board's circuit has room for."""
+    """Nodes and edges that one board's circuit holds."""
 
     board: str
     nodes: int
     edges: int
 
-    def lacks(self, mesh: Mesh) -> str:
-        """What of the mesh is too much for it, in words; nothing when it fits."""
+    def shortfall(self, mesh: Mesh) -> str:
+        """Return in words what the mesh has too many of, "" when it fits."""
         too_many = [
             f"{have} {what} of {room}"
             for what, have, room in (("nodes", len(mesh.points), self.nodes), ("edges", len(mesh.edges), self.edges))
@@ -32,8 +30,8 @@ class Capacity:
         return ", ".join(too_many)
 
 
-def boards(folder: Path = FOLDER) -> list[Capacity]:
-    """Every board's, in the order of their names. Raises `InputError` for a file without the two numbers."""
+def load_capacities(folder: Path = BOARDS) -> list[Capacity]:
+    """Return every board's capacity, by name. Raises `InputError` for a file without the two numbers."""
     found = []
     for path in sorted(folder.glob("*.toml")):
         try:
@@ -46,6 +44,6 @@ def boards(folder: Path = FOLDER) -> list[Capacity]:
     return found
 
 
-def most_at_a_node(formats: Formats) -> int:
-    """Edges that may meet at a node: the circuit's sum of so many forces cannot overflow."""
+def max_edges_at_node(formats: Formats) -> int:
+    """Return how many edges may meet at a node without the circuit's sum of their forces overflowing."""
     return formats.accumulator.raw_max // -formats.force.raw_min

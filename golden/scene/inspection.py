@@ -1,4 +1,4 @@
-"""What there is to say of a mesh before it is run: size, worst element, stable steps, the boards that hold it."""
+"""Figures of a mesh before it is run: size, worst element, stable steps, the boards that hold it."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from golden.scene import capacity
 from golden.support.errors import InputError
 
 
-def inspect(mesh: Mesh, materials_of: Scene | None = None) -> dict:
-    """The figures of a mesh, ready for JSON: SI units, nodes and elements by their index from 0.
+def inspect(mesh: Mesh, materials_from: Scene | None = None) -> dict:
+    """Return the figures of a mesh, ready for JSON: SI units, nodes and elements by their index from 0.
 
-    ``materials_of`` is a scene whose materials and density are tried out on it. Raises `InputError` when that has
+    ``materials_from`` is a scene whose materials and density are tried out on the mesh. Raises `InputError` when it has
     another dimension.
     """
     quality, lengths = mesh.quality(), mesh.lengths()
@@ -46,22 +46,25 @@ def inspect(mesh: Mesh, materials_of: Scene | None = None) -> dict:
         "most_edges_at_a_node": {
             "edges": int(meeting.max()),
             "node": int(np.argmax(meeting)),
-            "allowed": capacity.most_at_a_node(Formats()),
+            "allowed": capacity.max_edges_at_node(Formats()),
         },
-        "stable_dt": materials_of and stable_dt(mesh, materials_of),
+        "stable_dt": materials_from and stable_dt(mesh, materials_from),
         "boards": {
-            board.board: {"fits": not board.lacks(mesh), "too_many": board.lacks(mesh)} for board in capacity.boards()
+            board.board: {"fits": not board.shortfall(mesh), "too_many": board.shortfall(mesh)}
+            for board in capacity.load_capacities()
         },
     }
 
 
 def stable_dt(mesh: Mesh, scene: Scene) -> dict[str, float | None]:
-    """(s) by name of the scene's materials: the largest stable step of the free mesh made of it alone, with the
-    scene's mean density; None where nothing limits it. Raises `InputError` for a scene of another dimension."""
+    """Return for each material of the scene the largest stable step (s) of the free mesh made of it alone.
+
+    The density is the scene's mean. None stands for no limit. Raises `InputError` for a scene of another dimension.
+    """
     if scene.dim != mesh.dim:
         raise InputError(f"--scene must be of an object in {mesh.dim} dimensions, as the mesh is, not {scene.dim}")
-    nobody, nothing = np.zeros(len(mesh.points), dtype=bool), np.zeros(mesh.points.shape)
-    free = Phase("free", 1, nobody, nothing, nobody, nothing)
+    none, zero = np.zeros(len(mesh.points), dtype=bool), np.zeros(mesh.points.shape)
+    free = Phase("free", 1, none, zero, none, zero)
     mass = mesh.lumped_mass(scene.mass.sum() / scene.mesh.measure().sum())
     everywhere = np.zeros(len(mesh.edges), dtype=int)
     found = {
@@ -73,8 +76,8 @@ def stable_dt(mesh: Mesh, scene: Scene) -> dict[str, float | None]:
     return {name: dt if isfinite(dt) else None for name, dt in found.items()}
 
 
-def lines(name: str, found: dict) -> list[str]:
-    """What `inspect` found, for people."""
+def report_lines(name: str, found: dict) -> list[str]:
+    """Return the figures of `inspect` as text."""
     plane = found["dim"] == 2
     low, high = (", ".join(f"{x:.6g}" for x in found["extent"][end]) for end in ("min", "max"))
     ratio, length, meeting = (found[key] for key in ("radius_ratio", "edge_length", "most_edges_at_a_node"))

@@ -1,4 +1,4 @@
-"""A scene file: one TOML file becomes a `Scene`, checked as a whole before anything runs."""
+"""Load a scene file: one TOML file becomes a `golden.physics.scene.Scene`, checked before anything runs."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from golden.mesh.mesh import Mesh
 from golden.physics import stability
 from golden.physics.materials import Material
 from golden.physics.scene import Phase, Scene
-from golden.scene import kinds, schema
-from golden.scene.assignment import assign, changed
+from golden.scene import schema
+from golden.scene.assignment import assign_materials, replace_materials
+from golden.scene.meshes import build_mesh
 from golden.scene.regions import select_nodes, vector
 from golden.support.errors import InputError
 
 
 def load(path) -> Scene:
-    """The scene in a file. Raises `InputError`: the file, the path of the key in it, and what it must be."""
+    """Return the scene in a file. Raises `InputError` with the file, the path of the key in it, and what it must be."""
     path = Path(path)
     try:
         return _scene(schema.convert(_document(path), schema.SceneFile), path)
@@ -39,10 +40,10 @@ def _document(path: Path) -> dict[str, Any]:
 
 def _scene(file: schema.SceneFile, path: Path) -> Scene:
     try:
-        mesh = kinds.make(file.mesh, path.parent)
+        mesh = build_mesh(file.mesh, path.parent)
     except InputError as error:
         raise error.under("mesh") from None
-    materials, edge_material = assign(file.materials, mesh)
+    materials, edge_material = assign_materials(file.materials, mesh)
     if not file.phases:
         raise InputError("phases must hold at least one phase, not none")
     phases = _phases(file, mesh, materials)
@@ -64,7 +65,7 @@ def _scene(file: schema.SceneFile, path: Path) -> Scene:
 
 
 def _mass(table: schema.Mass, mesh: Mesh) -> np.ndarray:
-    """(N,) kg: each element's mass, in proportion to its area or volume, shared by its nodes."""
+    """Return the nodes' masses (N,) in kg: they share the mass of each element, which goes by its area or volume."""
     if (table.density is None) == (table.total is None):
         given = "neither" if table.density is None else "both"
         raise InputError(f"mass must have one of density and total, not {given}")
@@ -72,14 +73,14 @@ def _mass(table: schema.Mass, mesh: Mesh) -> np.ndarray:
 
 
 def _phases(file: schema.SceneFile, mesh: Mesh, materials: tuple[Material, ...]) -> tuple[Phase, ...]:
-    """The phases, each with the materials that it brings, or None."""
+    """Return the phases, each with the materials that it brings, or None."""
     phases = []
     for n, table in enumerate(file.phases):
         phase, path = _phase(table, mesh, file.dt, n), f"phases[{n}].materials"
         if table.materials and n == 0:
             raise InputError(f"{path} must not be there: the object begins with those of materials")
         if table.materials:
-            materials = changed(table.materials, materials, path)
+            materials = replace_materials(table.materials, materials, path)
             phase = replace(phase, materials=materials)
         phases.append(phase)
     return tuple(phases)
@@ -106,13 +107,15 @@ def _phase(table: schema.Phase, mesh: Mesh, dt: float, number: int) -> Phase:
         nodes = select_nodes(region, mesh, f"{path}.loads[{n}]")
         load[nodes] += vector(region.force, mesh.dim, f"{path}.loads[{n}].force")
     phase = Phase(table.name or f"phase {number + 1}", steps, fixed, velocity, driven, load)
-    _no_part_adrift(phase, mesh, path)
+    _check_parts_held(phase, mesh, path)
     return phase
 
 
-def _no_part_adrift(phase: Phase, mesh: Mesh, path: str) -> None:
-    """A mesh of several parts must have each of them held: unconnected parts know nothing of each other, so
-    one that is free only flies away. An object in one piece may be free."""
+def _check_parts_held(phase: Phase, mesh: Mesh, path: str) -> None:
+    """Refuse a mesh of several parts of which one is free: nothing connects it to the others, so it would fly away.
+
+    An object in one piece may be free.
+    """
     count, part = mesh.components()
     adrift = np.setdiff1d(part, part[phase.held])
     if count > 1 and adrift.size:
@@ -124,7 +127,7 @@ def _no_part_adrift(phase: Phase, mesh: Mesh, path: str) -> None:
 
 
 def _frames(table: schema.Frames, phases: tuple[Phase, ...]) -> np.ndarray:
-    """Steps to keep: every so many, or a number of them evenly spread; the ends of the phases in any case."""
+    """Return the steps to keep: every so many, or a number of them evenly spread, and the ends of all phases."""
     if (table.every is None) == (table.count is None):
         given = "neither" if table.every is None else "both"
         raise InputError(f"frames must have one of every and count, not {given}")

@@ -1,9 +1,10 @@
-"""Regions of an object, as a scene file names them: a box, a plane, a ball, or a list of nodes."""
+"""Regions of an object in a scene file: a box, a plane, a ball, or a list of nodes."""
 
 from __future__ import annotations
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import asdict
 
 from golden.mesh.mesh import Mesh
 from golden.support.errors import InputError
@@ -19,7 +20,7 @@ class Extent(Struct, forbid_unknown_fields=True):
 
 
 class Plane(Struct, forbid_unknown_fields=True):
-    """The plane where the coordinate along `axis` is `at` (m), of the thickness 2 `tolerance` (m)."""
+    """Points whose coordinate along ``axis`` is within ``tolerance`` (m) of ``at`` (m)."""
 
     axis: str
     at: float
@@ -27,7 +28,7 @@ class Plane(Struct, forbid_unknown_fields=True):
 
 
 class Ball(Struct, forbid_unknown_fields=True):
-    """What is at most `radius` (m) away from `center` (m): in two dimensions a disc."""
+    """Points at most ``radius`` (m) away from ``center`` (m): in two dimensions a disc."""
 
     center: list[float]
     radius: float
@@ -42,11 +43,11 @@ class Region(Struct, forbid_unknown_fields=True, kw_only=True):
     nodes: list[int] | None = None
 
 
-KINDS = Region.__struct_fields__
+KINDS = "box", "plane", "ball", "nodes"
 
 
 def select_nodes(region: Region, mesh: Mesh, path: str) -> np.ndarray:
-    """(N,) bool: the nodes in the region. `path` is its place in the file.
+    """Return the mask (N,) of the nodes in the region. ``path`` is the region's key in the file.
 
     Raises `InputError` when the region is not one of the kinds, doesn't fit the mesh, or is empty.
     """
@@ -59,7 +60,7 @@ def select_nodes(region: Region, mesh: Mesh, path: str) -> np.ndarray:
 
 
 def select_cells(region: Region, mesh: Mesh, path: str) -> np.ndarray:
-    """(M,) bool: the elements with their centroid in the region or, for a list of nodes, all of their nodes.
+    """Return the mask (M,) of the elements with their centroid or, for a list of nodes, all their nodes in the region.
 
     Raises `InputError` as `select_nodes` does.
     """
@@ -72,14 +73,14 @@ def select_cells(region: Region, mesh: Mesh, path: str) -> np.ndarray:
 
 
 def vector(values: list[float], dim: int, path: str) -> np.ndarray:
-    """(dim,) float64. Raises `InputError` for another number of components."""
+    """Return the components as an array (dim,). Raises `InputError` for another number of them."""
     if len(values) != dim:
         raise InputError(f"{path} must have {dim} components, as the mesh does, not {len(values)}")
     return np.array(values, dtype=float)
 
 
 def _exactly_one(region: Region, path: str) -> None:
-    given = [kind for kind in KINDS if getattr(region, kind) is not None]
+    given = [kind for kind, value in asdict(region).items() if kind in KINDS and value is not None]
     if len(given) != 1:
         raise InputError(f"{path} must have one of {', '.join(KINDS)}, not {' and '.join(given) or 'none'}")
 

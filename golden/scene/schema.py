@@ -1,4 +1,4 @@
-"""What a scene file may say: its tables, keys and types. Nothing here knows what they mean together."""
+"""Schema of a scene file: its tables, keys and types, each checked alone."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Phase(Struct, forbid_unknown_fields=True):
     fixed: list[Region] = []
     driven: list[Driven] = []
     loads: list[Load] = []
-    materials: dict[str, Any] = {}  # without regions: what those of these names are from here on
+    materials: dict[str, Any] = {}  # without regions: they replace those of these names
 
 
 class Frames(Struct, forbid_unknown_fields=True):
@@ -104,7 +104,7 @@ class Frames(Struct, forbid_unknown_fields=True):
 class SceneFile(Struct, forbid_unknown_fields=True):
     dt: Positive  # s
     mesh: Mesh
-    materials: dict[str, Any]  # their keys depend on the preset: golden/scene/assignment.py
+    materials: dict[str, Any]  # their keys depend on the preset: `golden.scene.assignment`
     mass: Mass
     phases: list[Phase]
     name: str | None = None
@@ -114,8 +114,8 @@ class SceneFile(Struct, forbid_unknown_fields=True):
 
 
 def convert(document: Any, kind: type, path: str = "") -> Any:
-    """The document, found at `path`, as a `kind`. Raises `InputError` naming the key that doesn't fit."""
-    _finite(document, path)
+    """Return the document, found at ``path``, as a ``kind``. Raises `InputError` naming the key that doesn't fit."""
+    _refuse_infinite(document, path)
     try:
         return msgspec.convert(document, kind)
     except msgspec.ValidationError as error:
@@ -123,18 +123,18 @@ def convert(document: Any, kind: type, path: str = "") -> Any:
 
 
 def unknown_key(path: str, known) -> InputError:
-    """The error for a key that isn't one of `known`."""
+    """Return the error for a key that isn't one of ``known``."""
     return InputError(f"{path} must not be there: the keys known here are {', '.join(known)}")
 
 
-def _finite(value: Any, path: str) -> None:
+def _refuse_infinite(value: Any, path: str) -> None:
     """Refuse the numbers that TOML has and float64 arithmetic must not meet."""
     if isinstance(value, dict):
         for key, entry in value.items():
-            _finite(entry, _join(path, key))
+            _refuse_infinite(entry, _join(path, key))
     elif isinstance(value, list):
         for index, entry in enumerate(value):
-            _finite(entry, f"{path}[{index}]")
+            _refuse_infinite(entry, f"{path}[{index}]")
     elif isinstance(value, (int, float)) and not -1e300 < value < 1e300:
         raise InputError(f"{path} must be a finite number, not {value:g}")
 
@@ -148,7 +148,7 @@ BOUNDS = {">": "above", ">=": "of at least"}
 
 
 def _explain(message: str, document: Any, kind: type, path: str) -> str:
-    """msgspec's message in the words of this project, with the value that was found."""
+    """Return msgspec's message in this project's form, with the value that was found."""
     what, _, where = message.partition(" - at `$")
     node, value = inspect.type_info(kind), document
     for key, index in re.findall(r"(\w+)|\[(\d+)\]", where):
@@ -162,12 +162,12 @@ def _explain(message: str, document: Any, kind: type, path: str) -> str:
         return str(unknown_key(_join(path, found[1]), filter(None, known)))
     if found := re.match(r"Expected `(\w+)(?: \| null)?`(?: (>=?) (\S+))?", what):
         bound = f" {BOUNDS[found[2]]} {float(found[3]):g}" if found[2] else ""
-        return f"{path} must be {WORDS[found[1]]}{bound}, not {shown(value)}"
-    return f"{path} must be one of {', '.join(KINDS)}, not {shown(value)}"  # the one table with variants
+        return f"{path} must be {WORDS[found[1]]}{bound}, not {format_value(value)}"
+    return f"{path} must be one of {', '.join(KINDS)}, not {format_value(value)}"  # the one table with variants
 
 
 def _entry(node: Any, key: str, value: Any) -> Any:
-    """Type of an entry of a table or a list; of several types, the one whose tag, if any, the value has."""
+    """Return the type of an entry of a table or a list; among variants, the one whose tag the value has."""
     if not key:
         inner = node.item_type
     else:
@@ -177,7 +177,7 @@ def _entry(node: Any, key: str, value: Any) -> Any:
     return next((node for node in variants if getattr(node, "tag", None) == said), variants[0])
 
 
-def shown(value: Any) -> str:
-    """A value as it is written in the file, tables and lists by name alone."""
+def format_value(value: Any) -> str:
+    """Return a value as it is written in the file, or the name of its kind for a table or a list."""
     named = {dict: "a table", list: "a list", bool: str(value).lower()}
     return named.get(type(value), repr(value) if isinstance(value, str) else str(value))

@@ -1,4 +1,4 @@
-"""What the project's command lines share: one line an error, the exit codes, and a word while something takes long."""
+"""Command lines: one line an error, the exit codes, and a status line while something takes long."""
 
 import argparse
 import sys
@@ -8,7 +8,7 @@ from golden.support.errors import InputError, InternalError
 
 
 class Parser(argparse.ArgumentParser):
-    """One line an error, as for every other mistake of the user's."""
+    """A parser that raises `InputError` for a wrong argument, as everything else does for the user's mistakes."""
 
     def error(self, message):
         raise InputError(f"{message} (see {self.prog} --help)")
@@ -37,8 +37,8 @@ def execute(parser: Parser, arguments=None) -> int:
 
 
 @contextmanager
-def said_meanwhile(text: str):
-    """A line on the terminal, gone when it's done; nothing where nobody watches."""
+def status_line(text: str):
+    """Show a line on the terminal, and clear it when the block ends; print nothing if stderr is no terminal."""
     watched = sys.stderr.isatty()
     if watched:
         print(text, end="\r", file=sys.stderr, flush=True)

@@ -6,19 +6,19 @@ from contextlib import contextmanager
 from pathlib import Path
 
 _numbers = itertools.count()
-"""So that threads don't share a file that isn't whole yet."""
+"""Numbers for partial files, so that two threads never share one."""
 
 
 @contextmanager
-def replaced(path: Path):
-    """An open binary file that takes the place of ``path`` at the end, unless an exception ends it."""
-    with replacing(path) as partial, open(partial, "wb") as file:
+def atomic_file(path: Path):
+    """Open a binary file that takes the place of ``path`` at the end, unless an exception ends it."""
+    with atomic_path(path) as partial, open(partial, "wb") as file:
         yield file
 
 
 @contextmanager
-def replacing(path: Path):
-    """The path of a file to write, which takes the place of ``path`` at the end, unless an exception ends it."""
+def atomic_path(path: Path):
+    """Yield the path of a file to write, which takes the place of ``path`` at the end, unless an exception ends it."""
     partial = path.with_name(f".{path.name}.{os.getpid()}.{next(_numbers)}")
     try:
         yield partial
@@ -29,5 +29,5 @@ def replacing(path: Path):
 
 def write_text(path: Path, text: str) -> None:
     """Write a file as a whole, in UTF-8."""
-    with replaced(path) as file:
+    with atomic_file(path) as file:
         file.write(text.encode())

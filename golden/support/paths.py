@@ -1,4 +1,4 @@
-"""The folders of the checkout that more than one command uses."""
+"""Folders of the checkout that more than one command uses."""
 
 from pathlib import Path
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from golden.support.command import said_meanwhile
+from golden.support.command import status_line
 from hw import options
 from hw.emit import build
 
@@ -17,7 +17,7 @@ def add_options(command) -> None:
 
 def run(args) -> int:
     chosen, folder = options.parameters(args), Path(args.out)
-    with said_meanwhile(f"writing the Verilog of {build.describe(chosen)} ..."):
+    with status_line(f"writing the Verilog of {build.describe(chosen)} ..."):
         new = build.build(chosen, folder, force=args.force)
     print(f"{folder / build.VERILOG}: {build.describe(chosen)}{'' if new else ' (up to date)'}")
     return 0

@@ -6,7 +6,7 @@ import numpy as np
 
 from golden.datapath import records
 from golden.datapath.memory_image import MemoryImage
-from golden.scene.capacity import most_at_a_node
+from golden.scene.capacity import max_edges_at_node
 from golden.support.errors import InputError
 from hw.map.control import Control
 from hw.map.memory_map import NODE_LOAD, NODE_STATE, Map, Region
@@ -37,7 +37,7 @@ class Program:
         ):
             if used > room:
                 raise InputError(f"{name} of the object must be at most {room} for this circuit, not {used}")
-        busiest, most = np.bincount(image.edges.ravel()).max(), most_at_a_node(image.formats)
+        busiest, most = np.bincount(image.edges.ravel()).max(), max_edges_at_node(image.formats)
         if busiest > most:
             raise InputError(f"edges at one node must be at most {most}, so that no sum overflows, not {busiest}")
         if image.formats != parameters.formats:

@@ -8,7 +8,7 @@ import numpy as np
 
 from golden.physics import stability
 from golden.physics.materials import Material
-from golden.physics.switch import switched
+from golden.physics.switch import switch_material
 from golden.support.errors import InputError
 from sim.encode.encode import EncodedScene, encode_materials
 from sim.encode.units import largest_share, trials_of
@@ -42,7 +42,7 @@ def switch(encoded: EncodedScene, machine, materials: tuple[Material, ...]) -> E
         if old == new:
             continue
         edges = image.edge_material == number
-        ratio, natural = switched(old, new, *_state(encoded, machine, edges))
+        ratio, natural = switch_material(old, new, *_state(encoded, machine, edges))
         length = natural / encoded.units.size
         for words, values, q in ((image.ratio, ratio, fmt.ratio), (image.length, length, fmt.length)):
             words[edges] = np.floor(np.ldexp(values, q.frac_bits) + 0.5).astype(np.int64)

@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
-from golden.support.files import replaced
+from golden.support.files import atomic_file
 from sim.figures import body, paper
 
 DPI = 100
@@ -42,7 +42,7 @@ def save(film: Film, path: Path, progress: Callable[[int], object] | None = None
         if progress:
             progress(number)
     first, *others = (each.quantize(palette=palette(), dither=Image.Dither.NONE) for each in pictures)
-    with replaced(path) as file:
+    with atomic_file(path) as file:
         first.save(
             file,
             format="GIF",

@@ -13,7 +13,7 @@ import numpy as np
 
 from golden.physics.scene import Scene
 from golden.support.errors import InputError
-from golden.support.files import replaced, write_text
+from golden.support.files import atomic_file, write_text
 from sim.figures import film, paper, reading, runs
 from sim.figures.catalogue import FIGURES
 from sim.figures.runs import Pair
@@ -47,7 +47,7 @@ def draw(name: str, pairs: dict[str, Pair], out: Path, shown: Callable[[int], ob
     with matplotlib.rc_context(paper.SETTINGS):
         still = module.draw(used)
         for suffix, settings in (("png", {"dpi": DPI}), ("svg", {"metadata": {"Date": None}})):
-            with replaced(out / f"{name}.{suffix}") as file:
+            with atomic_file(out / f"{name}.{suffix}") as file:
                 still.savefig(file, format=suffix, **settings)
         if shown:
             shown(1)

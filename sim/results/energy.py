@@ -64,7 +64,7 @@ def _enter(model: Model, phase: Phase, run: Trajectory, frame: int) -> None:
     """Give the model the materials that the phase brings, in the state of this frame."""
     if phase.materials:
         _put(model, run, frame)
-        model.become(phase.materials)
+        model.change_materials(phase.materials)
 
 
 def _begin(model: Model, phase: Phase, run: Trajectory, frames) -> tuple[float, np.ndarray]:

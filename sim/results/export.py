@@ -11,7 +11,7 @@ import numpy as np
 from golden.mesh import files as meshfile
 from golden.physics.scene import Scene
 from golden.physics.trajectory import Trajectory
-from golden.support.files import replaced
+from golden.support.files import atomic_file
 from sim.results.energy import edge_forces
 
 COLLECTION = "run.pvd"
@@ -60,5 +60,5 @@ def _write_collection(path: Path, times: np.ndarray, paths: list[Path]) -> None:
     for time, frame in zip(times.tolist(), paths, strict=True):
         ElementTree.SubElement(frames, "DataSet", timestep=repr(time), file=frame.name)
     ElementTree.indent(root)
-    with replaced(path) as file:
+    with atomic_file(path) as file:
         ElementTree.ElementTree(root).write(file, encoding="utf-8", xml_declaration=True)

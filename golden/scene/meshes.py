@@ -1,4 +1,4 @@
-"""The mesh that a scene file or a command line asks for."""
+"""Build the mesh that a scene file or a command line asks for."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from golden.mesh.mesh import Mesh
 from golden.scene import schema
 
 
-def make(table: schema.Mesh, folder: Path) -> Mesh:
-    """The mesh of a table; a file's name is relative to the folder. Raises `InputError` naming a key of the table."""
+def build_mesh(table: schema.Mesh, folder: Path) -> Mesh:
+    """Return the mesh of a table; file names are relative to the folder. Raises `InputError` naming the table's key."""
     match table:
         case schema.Rectangle():
             return mesh.rectangle(table.nodes, table.size)
