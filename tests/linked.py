@@ -12,6 +12,7 @@ from link_objects import KEY
 from hw.emit.verilog import convert
 from hw.link.device import Device
 from hw.link.frame import Frame, unpacked
+from hw.link.items import Items
 from hw.link.receive import BYTE_CYCLES
 from hw.machine.core import Core
 from hw.map.control import MAGIC
@@ -21,6 +22,7 @@ from sim.backends.verilated import library, opened
 
 SHIM = Path(__file__).with_name("linked.cpp")
 SMALL = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1)
+ITEMS = Items.of_word(SMALL.formats.state)
 IDENTITY = [MAGIC, 0x123456789]
 ROOM = 100_000
 QUIET = 5000

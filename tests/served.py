@@ -5,12 +5,14 @@ import threading
 
 import numpy as np
 
+from hw.link.items import Items
 from hw.parameters import Parameters
 from sim.backends.link import serve
 from sim.backends.link.served import BAUD, CLOCK_HZ, SerialCircuit
 from sim.backends.rtl import BUILD
 
 SMALL = Parameters(lanes=1, nodes=32, edges=64, materials=2, tables=1)
+ITEMS = Items.of_word(SMALL.formats.state)
 
 
 def serial_circuit(parameters=SMALL, **kwargs) -> SerialCircuit:

@@ -6,12 +6,12 @@ from collections import Counter
 
 import pytest
 from link_objects import KEY
-from linked import Line
+from linked import ITEMS, Line
 from test_hw_link_device import X, access, hello, read, write
 
 from hw.link.bound import Work, cycles
 from hw.link.frame import LEAST, FrameError, unpacked
-from hw.link.protocol import ITEM_BYTES, Status, items
+from hw.link.protocol import Status
 from hw.link.receive import EVENTS
 from hw.link.registers import LINK, Link
 from hw.link.send import LOOK
@@ -80,7 +80,7 @@ def damaged(r, seq):
 def answered(words: int) -> int:
     """Cycles in which an answer is out: each byte is looked for, and sent, and some are of COBS."""
     work = Work(segments=2, read=words)
-    return cycles(work) + 3 * LOOK * (LEAST + ITEM_BYTES * work.items)
+    return cycles(work, ITEMS) + 3 * LOOK * (LEAST + ITEMS.bytes * work.items)
 
 
 def told(coded: bytes) -> str:
@@ -112,7 +112,7 @@ def campaign(seed: int, frames: int) -> Counter:
         came = line.send(sent + good.packed(KEY), answered(WORDS + len(COUNTERS) * counts))
         answer = unpacked(came.strip(b"\0"), KEY)
         assert (answer.seq, answer.status) == (seq, Status.DONE), f"after {number} frames: {answer}"
-        _, *x = items(answer.payload)
+        _, *x = ITEMS.split(answer.payload)
         about = f"after {number} frames, of which the last were {sent.hex()}"
         assert not any(x[:WORDS]), f"{about}, words are {x[:WORDS]}"
         counted = dict(zip(EVENTS, x[WORDS:], strict=counts))

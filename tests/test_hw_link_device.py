@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from integer_objects import random_image
 from link_objects import KEY
-from linked import IDENTITY, QUIET, SMALL, Line
+from linked import IDENTITY, ITEMS, QUIET, SMALL, Line
 
 from hw.link.frame import ANSWER, Frame
-from hw.link.protocol import BUSY, ITEM_BYTES, ITEMS_MOST, Kind, Operation, Status, head, item, items
+from hw.link.protocol import BUSY, GREETING_BYTES, Kind, Operation, Status
 from hw.map.control import MAGIC, Control
 from hw.map.memory_map import Map, Region
 from sim.backends.native import NativeMachine
@@ -26,7 +26,7 @@ def exchanged(*commands: Frame) -> list[Frame]:
 
 
 def hello(seq=0, nonce=7):
-    return Frame(Operation.HELLO, seq, payload=item(nonce))
+    return Frame(Operation.HELLO, seq, payload=nonce.to_bytes(GREETING_BYTES, "little"))
 
 
 def control(register):
@@ -34,11 +34,15 @@ def control(register):
 
 
 def read(address, count=1, across=False):
-    return head(Kind.READ, address, count, across)
+    return ITEMS.head(Kind.READ, address, count, across)
 
 
 def write(address, *words, across=False):
-    return head(Kind.WRITE, address, len(words), across) + b"".join(map(item, words))
+    return ITEMS.head(Kind.WRITE, address, len(words), across) + b"".join(map(ITEMS.pack, words))
+
+
+def check(address, count):
+    return ITEMS.head(Kind.CHECK, address, count)
 
 
 def access(seq, *segments, operation=Operation.ACCESS):
@@ -47,8 +51,8 @@ def access(seq, *segments, operation=Operation.ACCESS):
 
 def test_a_greeting_tells_who_is_there():
     (answer,) = exchanged(hello(9, nonce=0xABCDE))
-    payload = b"".join(map(item, (0, 0xABCDE, *IDENTITY)))
-    assert answer == Frame(Operation.HELLO | ANSWER, 9, Status.DONE, payload)
+    payload = b"".join(map(ITEMS.pack, (0, 0xABCDE, *IDENTITY)))
+    assert answer == Frame(Operation.HELLO | ANSWER, 9, Status.DONE, payload, ITEMS.bytes)
 
 
 def test_what_is_written_is_read_and_checked(rng):
@@ -57,11 +61,11 @@ def test_what_is_written_is_read_and_checked(rng):
     _, wrote, got = exchanged(
         hello(),
         access(1, write(x, *words[:6], across=True), write(x + 1, *words[6:])),
-        access(2, read(v, 3, across=True), read(x + 1, 6), head(Kind.CHECK, x + 1, 6), read(control(Control.MAGIC))),
+        access(2, read(v, 3, across=True), read(x + 1, 6), check(x + 1, 6), read(control(Control.MAGIC))),
     )
-    assert wrote == Frame(Operation.ACCESS | ANSWER, 1, Status.DONE, item(0))
-    check = zlib.crc32(b"".join(map(item, words[6:])))
-    assert items(got.payload) == [0, *words[3:6], *words[6:], check, MAGIC]
+    assert wrote == Frame(Operation.ACCESS | ANSWER, 1, Status.DONE, ITEMS.pack(0), ITEMS.bytes)
+    crc = zlib.crc32(b"".join(map(ITEMS.pack, words[6:])))
+    assert ITEMS.split(got.payload) == [0, *words[3:6], *words[6:], crc, MAGIC]
     assert (got.seq, got.status) == (2, Status.DONE)
 
 
@@ -72,7 +76,7 @@ def test_a_refused_word_is_told_and_the_others_done():
         access(1, write(control(Control.MAGIC), 5), write(load, 8)),
         access(2, read(load), read(control(Control.REFUSED))),
     )
-    assert (wrote.status, got.status, items(got.payload)) == (Status.REFUSED, Status.DONE, [0, 8, 1])
+    assert (wrote.status, got.status, ITEMS.split(got.payload)) == (Status.REFUSED, Status.DONE, [0, 8, 1])
 
 
 X = Map(SMALL).address(Region.NODE, "x_x", 0)
@@ -83,39 +87,40 @@ X = Map(SMALL).address(Region.NODE, "x_x", 0)
     [
         (access(1, write(X, 5), read(X)[:-1]), Status.MALFORMED),
         (access(1, write(X, 5), write(X, 6, 7)[:-1]), Status.MALFORMED),
-        (access(1, write(X, 5), write(X, 6, 7)[:-ITEM_BYTES]), Status.MALFORMED),
-        (access(1, write(X, 5), head(3, X, 1)), Status.MALFORMED),
+        (access(1, write(X, 5), write(X, 6, 7)[: -ITEMS.bytes]), Status.MALFORMED),
+        (access(1, write(X, 5), ITEMS.head(3, X, 1)), Status.MALFORMED),
         (access(1, write(X, 5), read(X, 16), *[read(X, 14)] * 6, read(X, 1)), Status.MALFORMED),
         (access(1, write(X, 5), operation=9), Status.UNKNOWN),
     ],
 )
 def test_a_payload_that_is_not_what_it_should_be_does_nothing(frame, status):
     _, answer, after = exchanged(hello(), frame, access(2, read(X)))
-    assert answer == Frame(frame.type | ANSWER, 1, status, item(0))
-    assert items(after.payload) == [0, 0]
+    assert answer == Frame(frame.type | ANSWER, 1, status, ITEMS.pack(0), ITEMS.bytes)
+    assert ITEMS.split(after.payload) == [0, 0]
 
 
 def test_an_answer_may_be_as_long_as_it_says():
     _, answer = exchanged(hello(), access(1, read(X, 16), *[read(X, 14)] * 6))
-    assert len(items(answer.payload)) == ITEMS_MOST + 1 and answer.status == Status.DONE
+    assert len(ITEMS.split(answer.payload)) == ITEMS.answer_most + 1 and answer.status == Status.DONE
 
 
 def test_before_a_greeting_nothing_is_done():
     stranger, _, got = exchanged(access(0, write(X, 5)), hello(7), access(8, read(X)))
-    assert stranger == Frame(Operation.ACCESS | ANSWER, 0, Status.STRANGER, item(0))
-    assert items(got.payload) == [0, 0]
+    assert stranger == Frame(Operation.ACCESS | ANSWER, 0, Status.STRANGER, ITEMS.pack(0), ITEMS.bytes)
+    assert ITEMS.split(got.payload) == [0, 0]
 
 
 def test_each_command_is_done_once_and_in_order():
     """One that comes again is answered again; one too early is dropped."""
     add = [access(n, write(X, 10 + n), read(X)) for n in range(1, 4)]
     answers = exchanged(hello(), add[0], add[2], add[0], add[1], add[0], add[2], access(4, read(X)))
-    assert [(a.seq, items(a.payload)[1]) for a in answers[1:]] == [(1, 11), (1, 11), (2, 12), (1, 11), (3, 13), (4, 13)]
+    seen = [(answer.seq, ITEMS.split(answer.payload)[1]) for answer in answers[1:]]
+    assert seen == [(1, 11), (1, 11), (2, 12), (1, 11), (3, 13), (4, 13)]
 
 
 def test_a_new_greeting_begins_anew():
     answers = exchanged(hello(), access(1, write(X, 5)), hello(100), access(101, read(X)), access(2, read(X)))
-    assert [a.seq for a in answers] == [0, 1, 100, 101] and items(answers[-1].payload) == [0, 5]
+    assert [a.seq for a in answers] == [0, 1, 100, 101] and ITEMS.split(answers[-1].payload) == [0, 5]
 
 
 STEPS = 200
@@ -135,7 +140,7 @@ def loaded(image):
 
 def state(answer) -> tuple[np.ndarray, ...]:
     """(N, 3) positions and forces that `LOOK` asked for."""
-    words = np.array(items(answer.payload)[1:]).reshape(2, 3, -1)
+    words = np.array(ITEMS.split(answer.payload)[1:]).reshape(2, 3, -1)
     top = 1 << SMALL.formats.state - 1
     return tuple(((part ^ top) - top).T for part in words)
 
@@ -181,4 +186,4 @@ def test_a_run_that_ends_while_it_is_paused_is_over(rng):
         line.send(look.packed(KEY), 3 * QUIET)
     answers = line.exchange(access((first + 2) % 256, read(control(Control.BUSY))))
     line.close()
-    assert items(answers[0].payload)[1] == 0
+    assert ITEMS.split(answers[0].payload)[1] == 0

@@ -3,11 +3,11 @@
 import numpy as np
 from integer_objects import random_image
 from link_objects import KEY
-from linked import QUIET, SMALL, Line
+from linked import ITEMS, QUIET, SMALL, Line
 from test_hw_link_device import access, control, hello, loaded, read, write
 
 from hw.link.frame import Frame
-from hw.link.protocol import Operation, Status, items
+from hw.link.protocol import Operation, Status
 from hw.link.registers import LINK, LINK_TEXT, Link
 from hw.map.control import Control
 from hw.map.memory_map import join
@@ -22,7 +22,7 @@ def register(link):
 
 def counted(answer) -> dict[str, int]:
     """What is not 0, but for good frames."""
-    values = dict(zip(Link, items(answer.payload)[1:], strict=True))
+    values = dict(zip(Link, ITEMS.split(answer.payload)[1:], strict=True))
     return {link.name: value for link, value in values.items() if value and link != Link.GOOD_FRAMES}
 
 
@@ -42,7 +42,7 @@ def test_what_happens_to_frames_is_counted():
     line.exchange(access(1, ALL), access(3, ALL), access(1, ALL))
     *_, answer = line.exchange(access(2, ALL))
     assert counted(answer) == {**damage, "GAPS": 1, "DUPLICATES": 1}
-    assert items(answer.payload)[1 + Link.GOOD_FRAMES] == 5
+    assert ITEMS.split(answer.payload)[1 + Link.GOOD_FRAMES] == 5
     wrote, after = line.exchange(access(3, write(register(Link.GAPS), 1)), access(4, ALL))
     line.close()
     assert wrote.status == Status.DONE and counted(after) == {**damage, "DUPLICATES": 1}
@@ -58,7 +58,7 @@ def test_what_is_no_register_or_no_count_is_refused():
     )
     line.close()
     assert (beyond.status, large.status) == (Status.REFUSED, Status.REFUSED) and not counted(after)
-    assert items(beyond.payload) == [0, 0]
+    assert ITEMS.split(beyond.payload) == [0, 0]
 
 
 def test_a_greeting_that_is_not_one_begins_no_session():
@@ -76,7 +76,7 @@ def test_a_segment_too_long_stays_in_its_word():
         hello(), access(1, write(place, 11, 12, 13, across=True)), access(2, read(join(1, 0, 5, 0)))
     )
     line.close()
-    assert wrote.status == Status.REFUSED and items(got.payload) == [0, 13]
+    assert wrote.status == Status.REFUSED and ITEMS.split(got.payload) == [0, 13]
 
 
 def run_of(rng, steps, silence):
@@ -105,7 +105,7 @@ def test_a_run_ends_when_the_host_is_silent(rng):
         )
     )
     line.close()
-    busy, done, cycles, halts, *x = items(answer.payload)[1:]
+    busy, done, cycles, halts, *x = ITEMS.split(answer.payload)[1:]
     assert not busy and halts == 1 and 0 < done < steps
     assert silence < cycles < silence + 2 * cycles // done
     model.step(done)
@@ -119,4 +119,4 @@ def test_a_run_goes_on_while_the_host_speaks(rng):
         line.send(access(seq + number, read(control(Control.BUSY))).packed(KEY), 12_000)
     (answer,) = line.exchange(access(seq + 10, read(control(Control.BUSY)), read(register(Link.HALTS))))
     line.close()
-    assert items(answer.payload)[1:] == [1, 0]
+    assert ITEMS.split(answer.payload)[1:] == [1, 0]

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scene_text
-from served import SMALL, NoisyLine, serial_circuit, served
+from served import ITEMS, SMALL, NoisyLine, serial_circuit, served
 
 from golden.scene import load as scenes
 from golden.support.errors import InputError
@@ -101,16 +101,16 @@ def test_an_exchange_takes_the_bytes_it_says(loaded):
     (answer,) = session.commands([(Operation.EXCHANGE, live.payload(np.zeros((2, 2))))])
     cycles = circuit.clock - before
     circuit.close()
-    there, back = line_bytes(2)
+    there, back = line_bytes(2, ITEMS)
     assert lengths[0] == there and len(Frame(1, 1, payload=answer.payload).packed(b"")) == back
     on_the_line = 10 * circuit.linked.identity.bit_cycles * (there + back)
-    between = bound.cycles(bound.Work(segments=6, read=12, written=6)) + bound.PAUSED + LOOK * back
+    between = bound.cycles(bound.Work(segments=6, read=12, written=6), ITEMS) + bound.PAUSED + LOOK * back
     assert on_the_line < cycles + line.SLICE < on_the_line + between + 2 * line.SLICE  # the machine was not running
 
 
 def test_more_nodes_than_fit_are_refused(loaded):
     board = Named()
-    with pytest.raises(InputError, match=f"nodes must be 1 to {most_nodes()}, which fit one exchange, not 30"):
+    with pytest.raises(InputError, match=f"nodes must be 1 to {most_nodes(ITEMS)}, which fit one exchange, not 30"):
         Live(board, loaded, np.zeros(30, int))
     with pytest.raises(InputError, match="not 0"):
         Live(board, loaded, np.zeros(0, int))
@@ -118,11 +118,11 @@ def test_more_nodes_than_fit_are_refused(loaded):
 
 def test_the_page_says_how_long_an_exchange_takes():
     page = Path(__file__).parents[1].joinpath("docs", "link.md").read_text()
-    (one, other) = (line_bytes(nodes) for nodes in (1, 9))
+    (one, other) = (line_bytes(nodes, ITEMS) for nodes in (1, 9))
     text = re.sub(r"\s+", " ", page)
     times = [10 * sum(count) / baud for baud in (1e3, 3e3) for count in (one, other)]  # ms, ten bits a byte
     assert (
         f"For one node {one[0]} bytes go out and {one[1]} come back, {times[0]:.2f} ms on the line at 1 Mbaud and "
         f"{times[2]:.2f} ms at 3; for nine nodes {other[0]} and {other[1]}, {times[1]:.1f} and {times[3]:.1f} ms."
     ) in text
-    assert f"up to {most_nodes()} nodes" in text
+    assert f"up to {most_nodes(ITEMS)} nodes" in text

@@ -3,20 +3,20 @@
 from integer_objects import random_image
 
 from hw.link.frame import PAYLOAD_MOST
-from hw.link.protocol import HEAD, ITEM_BYTES, ITEMS_MOST, Kind, items
+from hw.link.items import Items
+from hw.link.protocol import HEAD, Kind
 from hw.parameters import Parameters
 from sim.backends.link import segments
 from sim.encode.program import Program
 
+ITEMS = Items.of_word(36)
+
 
 def heads(payload):
     """(kind, [addresses], [words of a write]) of a payload's segments."""
-    rest = items(payload)
+    rest = ITEMS.split(payload)
     while rest:
-        head, rest = rest[0], rest[1:]
-        field, low = {}, 0
-        for name, q in HEAD.items():
-            field[name], low = head >> low & (1 << q.width) - 1, low + q.width
+        field, rest = HEAD.unpack(rest[0]), rest[1:]
         stride = segments.STRIDES[bool(field["across"])]
         addresses = [field["address"] + n * stride for n in range(field["count"])]
         words = field["count"] if field["kind"] == Kind.WRITE else 0
@@ -34,26 +34,26 @@ def pairs(rng):
 
 def test_writes_come_out_as_they_went_in(rng):
     wanted, got = pairs(rng), []
-    payloads = list(segments.writes(wanted))
+    payloads = list(segments.writes(wanted, ITEMS))
     for payload in payloads:
-        assert len(payload) <= PAYLOAD_MOST and len(payload) % ITEM_BYTES == 0
+        assert len(payload) <= PAYLOAD_MOST and len(payload) % ITEMS.bytes == 0
         for kind, addresses, words in heads(payload):
             assert kind == Kind.WRITE
             got += zip(addresses, words, strict=True)
     assert got == wanted
-    assert sum(map(len, payloads)) < 1.25 * ITEM_BYTES * len(wanted)
+    assert sum(map(len, payloads)) < 1.25 * ITEMS.bytes * len(wanted)
 
 
 def test_reads_and_checks_reach_every_address_in_order(rng):
     wanted = [address for address, _ in pairs(rng)]
     got = []
-    for payload in segments.reads(wanted):
+    for payload in segments.reads(wanted, ITEMS):
         read = [addresses for kind, addresses, _ in heads(payload)]
-        assert len(payload) <= PAYLOAD_MOST and sum(map(len, read)) <= ITEMS_MOST
+        assert len(payload) <= PAYLOAD_MOST and sum(map(len, read)) <= ITEMS.answer_most
         got += [address for addresses in read for address in addresses]
     assert got == wanted
     got = []
-    for payload, counts in segments.checks(wanted):
+    for payload, counts in segments.checks(wanted, ITEMS):
         checked = [(kind, addresses) for kind, addresses, _ in heads(payload)]
         assert len(payload) <= PAYLOAD_MOST and [len(addresses) for _, addresses in checked] == counts
         assert {kind for kind, _ in checked} == {Kind.CHECK}
@@ -65,4 +65,4 @@ def test_a_long_run_is_cut_and_a_run_across_is_one_segment():
     assert list(segments.runs(range(600))) == [(0, 255, False), (255, 255, False), (510, 90, False)]
     places = [3 + (word << 16) for word in range(6)]
     assert list(segments.runs(places)) == [(3, 6, True)]
-    assert list(segments.runs([])) == [] and not list(segments.writes([]))
+    assert list(segments.runs([])) == [] and not list(segments.writes([], ITEMS))

@@ -1,10 +1,10 @@
 """Commands over a line that loses and damages bytes: each is done exactly once, in order."""
 
 import pytest
-from served import SMALL, NoisyLine, serial_circuit
+from served import ITEMS, SMALL, NoisyLine, serial_circuit
 
 from hw.link.description import key
-from hw.link.protocol import Kind, Operation, Status, head, item, items
+from hw.link.protocol import Kind, Operation, Status
 from hw.map.control import MAGIC, Control
 from hw.map.memory_map import Map, Region
 from sim.backends.link.errors import NoAnswer
@@ -19,7 +19,8 @@ def control(register):
 
 
 # One refused write counts one, whoever did it; then the count is read
-COUNTING = head(Kind.WRITE, control(Control.MAGIC), 1) + item(0) + head(Kind.READ, control(Control.REFUSED), 1)
+REFUSED = ITEMS.head(Kind.WRITE, control(Control.MAGIC), 1) + ITEMS.pack(0)
+COUNTING = REFUSED + ITEMS.head(Kind.READ, control(Control.REFUSED), 1)
 
 
 def counted(rng, share, commands):
@@ -30,7 +31,7 @@ def counted(rng, share, commands):
     answers = list(session.commands([(Operation.ACCESS, COUNTING)] * commands))
     circuit.close()
     assert all(answer.status == Status.REFUSED for answer in answers)
-    return [items(answer.payload)[1] for answer in answers], session.retries, line.damaged
+    return [ITEMS.split(answer.payload)[1] for answer in answers], session.retries, line.damaged
 
 
 @pytest.mark.parametrize("share", RATES)
@@ -58,10 +59,10 @@ def test_a_host_whose_rate_is_two_per_cent_off_is_understood(error, rng):
     session = Session(line, lambda identity: key(SMALL), 10 * TIMEOUT, clock=line.clock)
     words = [int(w) for w in rng.integers(0, 1 << 36, 90)]
     x = Map(SMALL).address(Region.NODE, "x_x", 0)
-    payload = head(Kind.WRITE, x, 30) + b"".join(map(item, words[:30])) + head(Kind.READ, x, 30)
+    payload = ITEMS.head(Kind.WRITE, x, 30) + b"".join(map(ITEMS.pack, words[:30])) + ITEMS.head(Kind.READ, x, 30)
     answers = list(session.commands([(Operation.ACCESS, payload)] * 5))
     circuit.close()
-    assert [items(answer.payload)[1:] for answer in answers] == [words[:30]] * 5 and not session.retries
+    assert [ITEMS.split(answer.payload)[1:] for answer in answers] == [words[:30]] * 5 and not session.retries
 
 
 @pytest.mark.parametrize("error", [-0.5, 1.0])

@@ -1,7 +1,8 @@
 """The latencies of a circuit, for the manifest and the documentation."""
 
 from hw.blocks.memory import READ_LATENCY
-from hw.link.bound import LONGEST, ONE_WORD
+from hw.link.bound import longest, one_word
+from hw.link.items import Items
 from hw.machine.core import datapaths
 from hw.machine.edge_memories import NEXT
 from hw.machine.host_port import LATENCY as HOST_LATENCY
@@ -16,6 +17,7 @@ from hw.parameters import Parameters
 def latencies(p: Parameters) -> list[tuple[str, str, int]]:
     """Return (part, from where to where, cycles), each read from the component that has it."""
     (edge, node), loop = datapaths(p), Latencies.of(p)
+    exchange, items = "an exchange waits for the end of a step besides", Items.of_word(p.formats.state)
     last = max(written(edge, name) for name in NEXT.values())
     return [
         ("block RAM", "address to word", READ_LATENCY),
@@ -25,6 +27,6 @@ def latencies(p: Parameters) -> list[tuple[str, str, int]]:
         ("node", "issue to its new state in the lanes' memories", node.latency + COPIED),
         ("stage", "an edge to the next edge of the same node, at least", loop.edge + loop.node),
         ("host port", "request to answer", HOST_LATENCY),
-        ("link", "end of a command that reads a word to its answer, at most", ONE_WORD),
-        ("link", "end of any command to its answer, at most; an exchange waits for the end of a step besides", LONGEST),
+        ("link", "end of a command that reads a word to its answer, at most", one_word(items)),
+        ("link", f"end of any command to its answer, at most; {exchange}", longest(items)),
     ]

@@ -33,6 +33,7 @@ def header(p: Parameters, about: dict) -> str:
     constants = [("KEY", "{" + ", ".join(f"0x{byte:02x}" for byte in key(p)) + "}")]
     constants += [(name, size) for name, size in _sizes(p)]
     constants += [("MAP_VERSION", about["map_version"]), ("LINK_VERSION", link["version"])]
+    constants += [("ITEM_BYTES", link["item_bytes"]), ("GREETING_BYTES", link["greeting_bytes"])]
     for field in about["address"]:
         constants += [(f"{field['name']}_low", field["low"]), (f"{field['name']}_bits", field["bits"])]
     for region in about["regions"]:
@@ -105,7 +106,7 @@ def page(p: Parameters, about: dict) -> str:
             link["statuses"],
             ("number", "name", "meaning"),
         ),
-        ("Identity: the items behind the one that is given back", link["identity"], ("item", "name", "meaning")),
+        ("Identity: the items after the one that is given back", link["identity"], ("item", "name", "meaning")),
     ):
         parts.append(_table(title, entries, columns))
     return "\n\n".join(parts) + "\n"

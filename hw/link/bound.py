@@ -1,28 +1,31 @@
-"""How long commands take: from the end of a frame to the first byte of its answer, in clock cycles."""
+"""Bounds on the time that commands take: from the end of a frame to the first byte of its answer, in clock cycles."""
 
 from dataclasses import dataclass
 
 from hw.blocks.memory import READ_LATENCY
-from hw.link.frame import HEADER, KEY_BYTES, PAYLOAD_MOST
-from hw.link.protocol import COUNT_MOST, ITEM_BYTES, ITEMS_MOST
+from hw.link.frame import HEADER, KEY_BYTES
+from hw.link.items import Items
+from hw.link.protocol import COUNT_MOST
 from hw.link.send import LOOK
 from hw.machine.host_port import LATENCY as HOST_LATENCY
 
-# What each takes of the states of Device, Walker and Emitter, all of which last a cycle, but for those named
-ITEM = ITEM_BYTES * (READ_LATENCY + 1)  # gathered from the payload
+# Cycles in the states of Device and Walker, one each where nothing else is said
 PORT = 1 + HOST_LATENCY + 1  # a register on each way
 TAKEN = 4 + 3  # the last byte through the receiver; idle, comparison, choice
-LOOKED = 2 + ITEM + 3  # a segment: between, segment, its head's item; head, measure, room
-WALKED = 2 + ITEM + 2  # between, segment, its head's item; head, the last words
+LOOKED = 2 + 3  # a segment: between, segment; after its head's item: head, measure, room
+WALKED = 2 + 2  # between, segment; after its head's item: head, the last words
 THROUGH = 2 + 1 + 2  # between, segment; walk; between, segment
 WORD = 2 + PORT  # words, access
-SEALED = ITEM_BYTES + 1 + PORT + 1 + ITEM_BYTES + HEADER.size + 1  # the last item, faults and their item, header, send
+SEALED = 1 + PORT + 1 + HEADER.size + 1  # faults and their item, header, send
 SENT = 3 + KEY_BYTES + 1  # until the sender knows what is sent; the key, for its CRC
+
+PAUSED = 3 * (PORT + 3) + 4
+"""Cycles of a pause: STOP, STEPS_DONE and RUN."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """What an `hw.link.protocol.Operation.ACCESS` holds: segments, and words that are read, written and checked."""
+    """The work of an `hw.link.protocol.Operation.ACCESS`: its segments, the words that they read, write and check."""
 
     segments: int
     read: int = 0
@@ -32,30 +35,37 @@ class Work:
 
     @property
     def items(self) -> int:
-        """Of its answer, the faults among them."""
+        """Items of its answer, with the faults."""
         return 1 + self.read + self.checks
 
 
-def cycles(work: Work) -> int:
-    """Cycles in which an ACCESS is answered at the latest, while no other answer is being sent. An EXCHANGE takes those
-    of the pause as well: the run's step or two, and `PAUSED`."""
+def cycles(work: Work, items: Items) -> int:
+    """Cycles in which an ACCESS is answered at the latest, while no other answer is being sent.
+
+    An EXCHANGE takes those of the pause as well: the run's step or two, and `PAUSED`.
+    """
+    gathered = items.bytes * (READ_LATENCY + 1)  # an item from the payload
     return (
         TAKEN
-        + work.segments * (LOOKED + WALKED)
+        + work.segments * (LOOKED + WALKED + 2 * gathered)
         + THROUGH
         + work.read * (WORD + 1)
-        + work.written * (WORD + ITEM)
-        + work.checked * (WORD + ITEM_BYTES)
+        + work.written * (WORD + gathered)
+        + work.checked * (WORD + items.bytes)
         + work.checks
         + SEALED
+        + 2 * items.bytes  # the last item and that of the faults are written
         + SENT
-        + LOOK * (HEADER.size + ITEM_BYTES * work.items)
+        + LOOK * (HEADER.size + items.bytes * work.items)
     )
 
 
-PAUSED = 3 * (PORT + 3) + 4
-"""Of a pause: STOP, STEPS_DONE and RUN."""
+def one_word(items: Items) -> int:
+    """Cycles of a command that reads a word."""
+    return cycles(Work(segments=1, read=1), items)
 
-ONE_WORD = cycles(Work(segments=1, read=1))
-LONGEST = cycles(Work(PAYLOAD_MOST // ITEM_BYTES, checked=ITEMS_MOST * COUNT_MOST, checks=ITEMS_MOST))
-"""That of a payload full of heads: as many of the longest checks as an answer can hold the sums of."""
+
+def longest(items: Items) -> int:
+    """Cycles of the longest command: heads alone, and as many of the longest checks as an answer has room for."""
+    checks = items.answer_most
+    return cycles(Work(items.command_most, checked=checks * COUNT_MOST, checks=checks), items)

@@ -8,6 +8,7 @@ from golden.numbers.record import Record
 from hw.link import protocol
 from hw.link.frame import KEY_BYTES
 from hw.link.identity import IDENTITY_TEXT
+from hw.link.items import Items
 from hw.link.registers import LINK, LINK_TEXT, Link
 from hw.machine.core import datapaths, faults
 from hw.map.control import REGISTERS, VERSION
@@ -27,6 +28,8 @@ def description(p: Parameters) -> dict:
         "formats": [{"name": q.name, **_format(q), "unit": q.unit} for q in p.formats.all()],
         "link": {
             "version": protocol.VERSION,
+            "item_bytes": Items.of_word(p.formats.state).bytes,
+            "greeting_bytes": protocol.GREETING_BYTES,
             "region": LINK,
             "registers": [_register(r, False, LINK_TEXT[r]) for r in Link],
             "operations": _numbered(protocol.OPERATION_TEXT),

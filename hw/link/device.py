@@ -6,8 +6,9 @@ from amaranth.lib.wiring import In, Out
 
 from hw.link.emit import Emitter
 from hw.link.frame import ANSWER, HEADER
+from hw.link.items import Items
 from hw.link.pause import Pause
-from hw.link.protocol import BUSY, ITEM_BYTES, WINDOW, Operation, Status
+from hw.link.protocol import BUSY, WINDOW, Operation, Status
 from hw.link.receive import EVENTS, FrameReceiver
 from hw.link.registers import LINK, LinkRegisters
 from hw.link.send import FrameSender
@@ -46,6 +47,11 @@ class Device(wiring.Component):
     state : int
         Bits of a word.
 
+    Raises
+    ------
+    ValueError
+        If an item cannot hold a word, or one of the identity.
+
     Members
     -------
     valid, data, error, broken : In
@@ -56,14 +62,16 @@ class Device(wiring.Component):
     """
 
     def __init__(self, *, key: bytes, identity: list[int], state: int):
-        self._key, self._identity, self._state = key, identity, state
+        self._key, self._identity, self._state, self._items = key, identity, state, Items.of_word(state)
+        for item in identity:
+            self._items.pack(item)
         super().__init__(members(state))
 
     def elaborate(self, platform):
         m = Module()
         m.submodules.receiver = self._receiver = receiver = FrameReceiver(self._key)
         m.submodules.sender = self._sender = sender = FrameSender(self._key)
-        m.submodules.emitter = self._emitter = emitter = Emitter()
+        m.submodules.emitter = self._emitter = emitter = Emitter(self._items)
         m.submodules.walker = self._walker = walker = Walker(self._state)
         m.submodules.pauser = self._pauser = pauser = Pause(self._state)
         m.submodules.registers = self._registers = registers = LinkRegisters(self._state)
@@ -147,7 +155,7 @@ class Device(wiring.Component):
             free.eq(~sender.waits.bit_select(receiver.seq[: len(sender.answer)], 1)),
         ]
         with m.State("idle"):
-            m.d.comb += [self._emitter.begin.eq(1), self._emitter.at.eq(HEADER.size + ITEM_BYTES)]
+            m.d.comb += [self._emitter.begin.eq(1), self._emitter.at.eq(HEADER.size + self._items.bytes)]
             m.d.sync += self._status.eq(Status.DONE)
             with m.If(registers.halt):
                 m.next = "halt"
@@ -224,7 +232,7 @@ class Device(wiring.Component):
         header = Signal(8)
         item = Signal.like(emitter.item)
         identity = Array(Const(part, len(emitter.item)) for part in self._identity)
-        payload, status = length - HEADER.size, self._status | Mux(self.port.busy, BUSY, 0)
+        size, payload, status = self._items.bytes, length - HEADER.size, self._status | Mux(self.port.busy, BUSY, 0)
         m.d.comb += [
             item.eq(faults),
             emitter.valid.eq(walker.item_valid | gives),
@@ -232,7 +240,7 @@ class Device(wiring.Component):
             sender.write.eq(emitter.write | heads),
             sender.write_place.eq(Mux(heads, number, emitter.place)),
             sender.write_data.eq(Mux(heads, header, emitter.data)),
-            header.eq(Array([receiver.type | ANSWER, receiver.seq, status, 0, payload[:8], payload[8:]])[number]),
+            header.eq(Array([receiver.type | ANSWER, receiver.seq, status, size, payload[:8], payload[8:]])[number]),
         ]
         with m.State("identity"):
             m.d.comb += [item.eq(identity[told]), gives.eq(1)]

@@ -4,12 +4,16 @@ from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from hw.link.protocol import ITEM_BYTES
+from hw.link.items import Items
 from hw.link.send import ANSWER_MOST
 
 
 class Emitter(wiring.Component):
-    """Writes items one behind the other, lowest byte first. Throughput: an item every `ITEM_BYTES` + 1 cycles.
+    """Writes items one behind the other, lowest byte first: one in as many cycles as it has bytes, and one more.
+
+    Parameters
+    ----------
+    items : Items
 
     Members
     -------
@@ -21,13 +25,14 @@ class Emitter(wiring.Component):
         A byte of the answer. While ``ready``, ``place`` is that behind the last item.
     """
 
-    def __init__(self):
+    def __init__(self, items: Items):
+        self._bytes = items.bytes
         super().__init__(
             {
                 "begin": In(1),
                 "at": In(range(ANSWER_MOST + 1)),
                 "valid": In(1),
-                "item": In(8 * ITEM_BYTES),
+                "item": In(8 * items.bytes),
                 "ready": Out(1),
                 "write": Out(1),
                 "place": Out(range(ANSWER_MOST + 1)),
@@ -38,10 +43,10 @@ class Emitter(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         rest = Signal.like(self.item)
-        left = Signal(range(ITEM_BYTES + 1))
+        left = Signal(range(self._bytes + 1))
         m.d.comb += [self.ready.eq(left == 0), self.write.eq(left != 0), self.data.eq(rest[:8])]
         with m.If(self.ready & self.valid):
-            m.d.sync += [rest.eq(self.item), left.eq(ITEM_BYTES)]
+            m.d.sync += [rest.eq(self.item), left.eq(self._bytes)]
         with m.If(~self.ready):
             m.d.sync += [rest.eq(Cat(rest[8:])), left.eq(left - 1), self.place.eq(self.place + 1)]
         with m.If(self.begin):

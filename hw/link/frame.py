@@ -1,8 +1,9 @@
 """What goes over the line: frames, ``00 | COBS(header, payload, CRC-32) | 00``.
 
-The header is type, seq, status, reserved and the payload's length, two bytes, lowest first. The CRC is that of Ethernet
-and zlib over `Protocol.key`, which is not sent, header and payload: who was made for another map of the memory gets no
-frame accepted. A greeting and its answer are without the key, so that the two can find out.
+The header is type, seq, status, bytes of an item (0 in commands) and the payload's length, two bytes, lowest first. The
+CRC is that of Ethernet and zlib over the key, which is not sent, header and payload: a circuit takes no frame of a host
+that was made for another memory map, and the other way round. A greeting and its answer are without the key, so that
+the two can find out.
 """
 
 import struct
@@ -40,12 +41,13 @@ class Frame:
     seq: int
     status: int = 0
     payload: bytes = b""
+    item_bytes: int = 0
 
     def packed(self, key: bytes) -> bytes:
         """As it goes over the line. Raises ValueError for a payload that is too long."""
         if len(self.payload) > PAYLOAD_MOST:
             raise ValueError(f"payload must be at most {PAYLOAD_MOST} bytes, not {len(self.payload)}")
-        body = HEADER.pack(self.type, self.seq, self.status, 0, len(self.payload)) + self.payload
+        body = HEADER.pack(self.type, self.seq, self.status, self.item_bytes, len(self.payload)) + self.payload
         return b"\0" + cobs.encode(body + struct.pack("<I", _crc(body, key))) + b"\0"
 
 
@@ -57,12 +59,12 @@ def unpacked(coded: bytes, key: bytes) -> Frame:
         raise FrameError("cobs_errors") from None
     if len(body) < LEAST or len(body) > MOST:
         raise FrameError("length_errors")
-    type_, seq, status, _, length = HEADER.unpack_from(body)
+    type_, seq, status, item_bytes, length = HEADER.unpack_from(body)
     if len(body) != LEAST + length:
         raise FrameError("length_errors")
     if struct.pack("<I", _crc(body[:-CRC_BYTES], key)) != body[-CRC_BYTES:]:
         raise FrameError("crc_errors")
-    return Frame(type_, seq, status, body[HEADER.size : -CRC_BYTES])
+    return Frame(type_, seq, status, body[HEADER.size : -CRC_BYTES], item_bytes)
 
 
 def _crc(body: bytes, key: bytes) -> int:

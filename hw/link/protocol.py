@@ -1,21 +1,24 @@
-"""What host and device say to each other: one table for circuit, driver and documentation.
+"""The protocol of the link: one table for circuit, driver and documentation.
 
-A payload is a list of items of `ITEM_BYTES`, lowest byte first. A command's are segments: a head, and the words of a
-write. An answer's are the faults, then a word for each that was read and for each check.
+A payload is a list of items (`hw.link.items`), of as many bytes as a word of the circuit needs; the header of every
+answer says how many. A command's payload is segments: a head, and the words of a write. An answer's payload is the
+faults, then a word for each that was read and for each check.
+
+A greeting comes before the host knows the size of an item. Its payload is `GREETING_BYTES`, a number in the lowest of
+them and then zeros.
 """
 
 from enum import IntEnum
 
 from golden.numbers.qformat import BIT, unsigned
 from golden.numbers.record import Record
-from hw.link.frame import GREETING, HEADER
-from hw.link.send import ANSWER_MOST, ANSWERS
+from hw.link.frame import GREETING
+from hw.link.send import ANSWERS
 from hw.map.memory_map import ADDRESS
 
 VERSION = 2
-ITEM_BYTES = 5
-ITEMS_MOST = (ANSWER_MOST - HEADER.size) // ITEM_BYTES - 1
-"""Items of an answer behind the faults."""
+GREETING_BYTES = 8
+"""Bytes of a greeting's payload, and the most that an item may have."""
 
 WINDOW = ANSWERS
 """Commands that may be under way."""
@@ -28,7 +31,7 @@ class Operation(IntEnum):
 
 
 OPERATION_TEXT = {
-    Operation.HELLO: "one item, which is given back, and the identity: begins a session, the next seq is one more",
+    Operation.HELLO: "a number, which is given back, and the identity: begins a session, the next seq is one more",
     Operation.ACCESS: "segments; while steps are run, only what may be read and written then",
     Operation.EXCHANGE: "segments, between two steps: a run pauses, and goes on afterwards to the same bits",
 }
@@ -83,20 +86,3 @@ STATUS_TEXT = {
 
 BUSY = 0x10
 """In the status byte: steps are run."""
-
-
-def head(kind: Kind, address: int, count: int, across: bool = False) -> bytes:
-    """A segment's head."""
-    fields = {"address": address, "across": int(across), "kind": kind, "unused": 0, "count": count}
-    return item(HEAD.pack(fields))
-
-
-def item(word: int) -> bytes:
-    return word.to_bytes(ITEM_BYTES, "little")
-
-
-def items(payload: bytes) -> list[int]:
-    return [int.from_bytes(payload[n : n + ITEM_BYTES], "little") for n in range(0, len(payload), ITEM_BYTES)]
-
-
-assert HEAD.width == 8 * ITEM_BYTES

@@ -6,13 +6,11 @@ from amaranth.lib.wiring import In, Out
 
 from hw.blocks.memory import READ_LATENCY
 from hw.link.frame import CRC, PAYLOAD_MOST
-from hw.link.protocol import HEAD, ITEM_BYTES, ITEMS_MOST, Kind
+from hw.link.items import Items
+from hw.link.protocol import GREETING_BYTES, HEAD, Kind
 from hw.machine.interfaces import HostAccess
 from hw.map.control import Control
 from hw.map.memory_map import ADDRESS, Region, join
-
-FARTHEST = PAYLOAD_MOST + ITEM_BYTES * HEAD["count"].raw_max
-"""Where the payload would end, if the words of a write are not all there."""
 
 
 class Walker(wiring.Component):
@@ -41,6 +39,8 @@ class Walker(wiring.Component):
     """
 
     def __init__(self, state: int):
+        self._items = items = Items.of_word(state)
+        self._farthest = PAYLOAD_MOST + items.bytes * HEAD["count"].raw_max  # the end if words of a write are missing
         super().__init__(
             {
                 "look": In(1),
@@ -53,7 +53,7 @@ class Walker(wiring.Component):
                 "place": Out(range(PAYLOAD_MOST)),
                 "byte": In(8),
                 "item_valid": Out(1),
-                "item": Out(8 * ITEM_BYTES),
+                "item": Out(8 * items.bytes),
                 "item_ready": In(1),
                 "noted": Out(1),
                 "steps": Out(32),
@@ -67,7 +67,7 @@ class Walker(wiring.Component):
         # only looked through; the item is a word to be written
         self._dry = Signal(name="dry")
         self._writes = Signal(name="writes")
-        self._position = Signal(range(FARTHEST + 1), name="position")
+        self._position = Signal(range(self._farthest + 1), name="position")
         self._given = Signal(range(1 << 15), name="given")
         self._word = Signal.like(self.item, name="word")
         self._number = Signal(3, name="number")
@@ -85,16 +85,16 @@ class Walker(wiring.Component):
         self._through = Signal(name="through")
         self._short = Signal(name="short")
         self._too_many = Signal(name="too_many")
-        self._extent = Signal(range(FARTHEST + 1), name="extent")
+        self._extent = Signal(range(self._farthest + 1), name="extent")
         self._runs = Signal(name="runs")
         self._stops = Signal(name="stops")
-        address = self._segment["address"]
+        address, size = self._segment["address"], self._items.bytes
         m.d.sync += [
             self._through.eq(self._position == self.length),
-            self._short.eq(self._position + ITEM_BYTES > self.length),
-            self._too_many.eq(self._given > ITEMS_MOST),
+            self._short.eq(self._position + self._items.bytes > self.length),
+            self._too_many.eq(self._given > self._items.answer_most),
             self._extent.eq(  # without a multiplier
-                sum(self._segment["count"] << n for n in range(ITEM_BYTES.bit_length()) if ITEM_BYTES >> n & 1)
+                sum(self._segment["count"] << n for n in range(size.bit_length()) if size >> n & 1)
             ),
             self._runs.eq(address == _control(Control.RUN)),
             self._stops.eq(address == _control(Control.STOP)),
@@ -120,7 +120,7 @@ class Walker(wiring.Component):
             with m.Elif(self.walk):
                 m.next = "between"
         with m.State("greeting"):
-            self._finish(m, self.length != ITEM_BYTES)
+            self._finish(m, self.length != GREETING_BYTES)
         with m.State("between"):
             m.next = "segment"
         with m.State("segment"):
@@ -136,7 +136,7 @@ class Walker(wiring.Component):
             with m.If(self._wait == 0):
                 m.d.sync += [self._word.eq(Cat(self._word[8:], self.byte)), self._position.eq(self._position + 1)]
                 m.d.sync += [self._number.eq(self._number + 1), self._wait.eq(READ_LATENCY)]
-                with m.If(self._number == ITEM_BYTES - 1):
+                with m.If(self._number == self._items.bytes - 1):
                     m.next = "head"
                     with m.If(self._writes):
                         m.next = "access"
@@ -197,7 +197,7 @@ class Walker(wiring.Component):
         with m.State("sum"):
             m.d.comb += self._crc.valid.eq(1)
             m.d.sync += [self._word.eq(self._word >> 8), self._number.eq(self._number + 1)]
-            with m.If(self._number == ITEM_BYTES - 1):
+            with m.If(self._number == self._items.bytes - 1):
                 m.next = "words"
         with m.State("give"):
             m.d.comb += self.item_valid.eq(1)
@@ -205,6 +205,8 @@ class Walker(wiring.Component):
                 m.next = "between"
                 with m.If((kind == Kind.READ) & ~self.greets):
                     m.next = "words"
+                with m.If(self.greets):  # the rest of its payload means nothing
+                    self._finish(m)
 
     def _next(self, m, address, across):
         """Within its field: a segment that is too long meets its own beginning, and nothing else."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from hw.link.description import key
 from hw.link.identity import Identity
-from hw.link.protocol import BUSY, Operation, Status, item, items
+from hw.link.protocol import BUSY, Operation, Status
 from hw.link.registers import LINK, Link
 from hw.machine.core import datapaths, faults
 from hw.map.control import MAGIC, Control
@@ -72,13 +72,21 @@ class Board:
         self._line.close()
 
     def write(self, writes: Iterable[tuple[int, int]]):
-        """(address, data) pairs, in this order. Raises `CommandRefused` if one is refused."""
-        for _ in self._ask(segments.writes(list(writes))):
+        """Write (address, data) pairs in this order.
+
+        Raises
+        ------
+        CommandRefused
+            If one is refused.
+        ValueError
+            If data are longer than a word of the circuit.
+        """
+        for _ in self._ask(segments.writes(self._checked(writes), self.session.items)):
             pass
 
     def read(self, addresses: list[int]) -> np.ndarray:
         """(n,) unsigned words. Raises `CommandRefused` if a read is refused."""
-        words = [word for payload in self._ask(segments.reads(addresses)) for word in payload]
+        words = [word for payload in self._ask(segments.reads(addresses, self.session.items)) for word in payload]
         return np.array(words, np.uint64)
 
     def verify(self, writes: Iterable[tuple[int, int]]):
@@ -86,11 +94,11 @@ class Board:
         memory = Map(self.parameters)
         held = {address: data & memory.mask(address) for address, data in writes}
         wanted = iter(held.values())
-        checks = list(segments.checks(list(held)))
+        checks = list(segments.checks(list(held), self.session.items))
         answers = self._ask(payload for payload, _ in checks)
         for (_, counts), found in zip(checks, answers, strict=True):
             for count, crc in zip(counts, found, strict=True):
-                if zlib.crc32(b"".join(item(next(wanted)) for _ in range(count))) != crc:
+                if zlib.crc32(b"".join(self.session.items.pack(next(wanted)) for _ in range(count))) != crc:
                     raise LinkError("the circuit must hold what it was sent, but the CRC of its memories differs")
 
     def run(self, cycles: int = 0) -> bool:
@@ -122,10 +130,17 @@ class Board:
         """Let runs end when nothing is heard of the host for so long; 0: never."""
         self.write([(join(LINK, 0, Link.WATCHDOG, 0), round(seconds * self.session.identity.clock_hz))])
 
+    def _checked(self, writes) -> list[tuple[int, int]]:
+        pairs, bits = list(writes), self.parameters.formats.state
+        for _, word in pairs:
+            if not 0 <= word < 1 << bits:
+                raise ValueError(f"a word must have at most {bits} bits, not be {word:#x}")
+        return pairs
+
     def _ask(self, payloads, operation=Operation.ACCESS):
         """Answers' items behind the faults."""
         for answer in self.session.commands((operation, payload) for payload in payloads):
-            yield items(self._good(answer).payload)[1:]
+            yield self.session.items.split(self._good(answer).payload)[1:]
 
     def _good(self, answer):
         status = Status(answer.status & ~BUSY)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from golden.support.errors import InputError
-from hw.link.frame import PAYLOAD_MOST, Frame
-from hw.link.protocol import ITEM_BYTES, ITEMS_MOST, Kind, head, item
+from hw.link.frame import Frame
+from hw.link.items import Items
+from hw.link.protocol import Kind
 from hw.map.memory_map import NODE_FORCE, NODE_STATE, Map, Region
 from sim.backends.link.board import Board
 from sim.encode.encode import EncodedScene, raw_vectors
@@ -15,9 +16,8 @@ from sim.encode.order import ranks
 AXES = 3
 READ_ITEMS = 2 * AXES
 """Items of an answer for a node: its position and the force on it."""
-ASKED_BYTES = 2 * ITEM_BYTES
-MOVED_BYTES = (1 + AXES) * ITEM_BYTES
-"""Bytes of a payload for a node that is looked at, and for one whose velocity is given as well."""
+ASKED_ITEMS, MOVED_ITEMS = 2, 1 + AXES
+"""Items of a command for a node that is looked at, and how many more if its velocity is given as well."""
 
 
 class Live:
@@ -41,7 +41,8 @@ class Live:
         self._board, self._encoded, self._nodes = board, encoded, np.asarray(nodes)
         self._places = ranks(encoded.node_order)[self._nodes]
         self._map = Map(board.parameters)
-        most = most_nodes()
+        self._items = Items.of_word(board.parameters.formats.state)
+        most = most_nodes(self._items)
         if not 1 <= len(self._nodes) <= most:
             raise InputError(f"nodes must be 1 to {most}, which fit one exchange, not {len(self._nodes)}")
 
@@ -71,30 +72,30 @@ class Live:
 
     def payload(self, velocity=None) -> bytes:
         """Of the command."""
-        parts = []
+        parts, items = [], self._items
         if velocity is not None:
             fmt, units = self._encoded.image.formats, self._encoded.units
             raw = raw_vectors(np.asarray(velocity) / units.velocity, fmt.velocity)
             mask = (1 << fmt.state) - 1
             for place, words in zip(self._places, raw.tolist(), strict=True):
-                parts.append(head(Kind.WRITE, self._address(NODE_STATE[AXES], place), AXES, across=True))
-                parts += [item(word & mask) for word in words]
+                parts.append(items.head(Kind.WRITE, self._address(NODE_STATE[AXES], place), AXES, across=True))
+                parts += [items.pack(word & mask) for word in words]
         for place in self._places:
             for word in (NODE_STATE[0], NODE_FORCE[0]):
-                parts.append(head(Kind.READ, self._address(word, place), AXES, across=True))
+                parts.append(items.head(Kind.READ, self._address(word, place), AXES, across=True))
         return b"".join(parts)
 
     def _address(self, word, place):
         return self._map.address(Region.NODE, word, int(place))
 
 
-def most_nodes() -> int:
+def most_nodes(items: Items) -> int:
     """Nodes that fit one exchange."""
-    return min(PAYLOAD_MOST // (ASKED_BYTES + MOVED_BYTES), ITEMS_MOST // READ_ITEMS)
+    return min(items.command_most // (ASKED_ITEMS + MOVED_ITEMS), items.answer_most // READ_ITEMS)
 
 
-def line_bytes(nodes: int, moved: bool = True) -> tuple[int, int]:
+def line_bytes(nodes: int, items: Items, moved: bool = True) -> tuple[int, int]:
     """Bytes on the line of an exchange about so many nodes: (to the circuit, from it)."""
-    asked = nodes * (ASKED_BYTES + moved * MOVED_BYTES)
-    given = (1 + nodes * READ_ITEMS) * ITEM_BYTES
+    asked = nodes * (ASKED_ITEMS + moved * MOVED_ITEMS) * items.bytes
+    given = (1 + nodes * READ_ITEMS) * items.bytes
     return tuple(len(Frame(1, 1, payload=b"\1" * count).packed(b"")) for count in (asked, given))

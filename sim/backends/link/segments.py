@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from hw.link.frame import PAYLOAD_MOST
-from hw.link.protocol import COUNT_MOST, ITEM_BYTES, ITEMS_MOST, Kind, head, item
+from hw.link.items import Items
+from hw.link.protocol import COUNT_MOST, Kind
 from hw.map.memory_map import ADDRESS
 
 STRIDES = {False: 1, True: 1 << ADDRESS.offsets["word"]}
 """From a word's address to the next: places of one word, or (across) words of one place."""
-
-PAYLOAD_ITEMS = PAYLOAD_MOST // ITEM_BYTES
 
 
 def runs(addresses: Iterable[int], most: int = COUNT_MOST) -> Iterator[tuple[int, int, bool]]:
@@ -30,46 +29,47 @@ def runs(addresses: Iterable[int], most: int = COUNT_MOST) -> Iterator[tuple[int
         yield begin, count, across
 
 
-def writes(pairs: list[tuple[int, int]]) -> Iterator[bytes]:
+def writes(pairs: list[tuple[int, int]], items: Items) -> Iterator[bytes]:
     """Payloads that write (address, word) pairs in this order."""
     words, payload = iter(word for _, word in pairs), b""
     for begin, count, across in runs(address for address, _ in pairs):
         while count:
-            room = (PAYLOAD_MOST - len(payload)) // ITEM_BYTES - 1
+            room = (PAYLOAD_MOST - len(payload)) // items.bytes - 1
             if room < 1:
                 yield payload
-                payload, room = b"", PAYLOAD_ITEMS - 1
+                payload, room = b"", items.command_most - 1
             some = min(room, count)
-            payload += head(Kind.WRITE, begin, some, across) + b"".join(item(next(words)) for _ in range(some))
+            payload += items.head(Kind.WRITE, begin, some, across)
+            payload += b"".join(items.pack(next(words)) for _ in range(some))
             begin, count = begin + some * STRIDES[across], count - some
     if payload:
         yield payload
 
 
-def reads(addresses: list[int]) -> Iterator[bytes]:
+def reads(addresses: list[int], items: Items) -> Iterator[bytes]:
     """Payloads whose answers have the words at these addresses in this order."""
     payload, given = b"", 0
     for begin, count, across in runs(addresses):
         while count:
-            some = min(count, ITEMS_MOST - given)
-            if some < 1 or len(payload) + ITEM_BYTES > PAYLOAD_MOST:
+            some = min(count, items.answer_most - given)
+            if some < 1 or len(payload) + items.bytes > PAYLOAD_MOST:
                 yield payload
                 payload, given = b"", 0
                 continue
-            payload += head(Kind.READ, begin, some, across)
+            payload += items.head(Kind.READ, begin, some, across)
             begin, count, given = begin + some * STRIDES[across], count - some, given + some
     if payload:
         yield payload
 
 
-def checks(addresses: list[int]) -> Iterator[tuple[bytes, list[int]]]:
+def checks(addresses: list[int], items: Items) -> Iterator[tuple[bytes, list[int]]]:
     """(payload, how many words each of its checks is about)"""
     payload, counts = b"", []
     for begin, count, across in runs(addresses):
-        if len(payload) + ITEM_BYTES > PAYLOAD_MOST or len(counts) == ITEMS_MOST:
+        if len(payload) + items.bytes > PAYLOAD_MOST or len(counts) == items.answer_most:
             yield payload, counts
             payload, counts = b"", []
-        payload += head(Kind.CHECK, begin, count, across)
+        payload += items.head(Kind.CHECK, begin, count, across)
         counts.append(count)
     if payload:
         yield payload, counts

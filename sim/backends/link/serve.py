@@ -6,12 +6,13 @@ import socket
 from collections.abc import Callable
 
 from golden.support.errors import InputError
-from hw.link.bound import LONGEST
+from hw.link.bound import longest
+from hw.link.items import LEAST, Items
 
 HOST = "127.0.0.1"
 SLICE = 2000
 """Cycles between two looks at the socket."""
-QUIET = 2 * LONGEST
+QUIET = 2 * longest(Items(LEAST))
 """Cycles without anything on the line or going on after which time stands still until the host speaks: more than any
 command takes."""
 

@@ -9,7 +9,8 @@ from time import monotonic
 
 from hw.link.frame import ANSWER, KEY_BYTES, Frame, FrameError, unpacked
 from hw.link.identity import Identity
-from hw.link.protocol import ITEM_BYTES, WINDOW, Operation, Status, item, items
+from hw.link.items import LEAST, Items
+from hw.link.protocol import GREETING_BYTES, WINDOW, Operation, Status
 from sim.backends.link.errors import NoAnswer, OtherCircuit
 
 TIMEOUT = 2.0
@@ -37,6 +38,8 @@ class Session:
     Attributes
     ----------
     identity : Identity
+    items : Items
+        As the circuit takes and gives them.
     retries : int
         Times that what was under way had to be sent again.
     damaged : int
@@ -99,24 +102,24 @@ class Session:
 
     def _greet(self) -> Identity:
         """Begin a session: whatever was before it is over, on the line too."""
-        nonce = secrets.randbits(8 * ITEM_BYTES)
+        nonce = secrets.randbits(8 * LEAST)
         self._seq = secrets.randbits(8)
-        greeting = self._frame(Operation.HELLO, item(nonce))
+        greeting = self._frame(Operation.HELLO, nonce.to_bytes(GREETING_BYTES, "little"))
         self._line.write(b"\0")
         self._send([greeting])
         under_way = deque([greeting])
         while True:
             answer = self._answered(under_way)
-            told = items(answer.payload)
-            if len(told) > 1 and told[1] == nonce and answer.status & 0xF == Status.DONE:
-                break
+            try:
+                self.items = Items(answer.item_bytes)
+                told = self.items.split(answer.payload)
+                if len(told) > 1 and told[1] == nonce and answer.status & 0xF == Status.DONE:
+                    return Identity.read(told[2:])
+            except ValueError as error:
+                raise OtherCircuit(
+                    f"--port must lead to a circuit of this version, but its identity has another form: {error}"
+                ) from None
             under_way.append(greeting)  # an answer to somebody else's greeting
-        try:
-            return Identity.read(told[2:])
-        except ValueError as error:
-            raise OtherCircuit(
-                f"--port must lead to a circuit of this version, but its identity has another form: {error}"
-            ) from None
 
     def _frame(self, operation: Operation, payload: bytes) -> Frame:
         frame = Frame(operation, self._seq, payload=payload)
