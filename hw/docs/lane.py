@@ -57,5 +57,7 @@ def lane(parameters: Parameters) -> str:
         ),
         Row("edge", "its next words are in its memories", [("memory", last - 1, last)]),
     ]
-    note = "One edge is issued per cycle. A thin line: it waits in delay registers. The number: the cycle in which it is done."
+    note = (
+        "One edge is issued per cycle. A thin line: it waits in delay registers. The number: the cycle when it is done."
+    )
     return chart("One edge in a lane: clock cycles after its issue", rows, note)
