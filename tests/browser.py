@@ -1,4 +1,4 @@
-"""Debian's chromium, without a window: what people open the report's page with."""
+"""Debian's chromium, headless, in which the tests open the report's page."""
 
 import os
 import shutil
@@ -11,7 +11,7 @@ import environment
 
 @contextmanager
 def chromium():
-    """A browser; the test is skipped where there is none, but in continuous integration there must be one."""
+    """Start a browser; without one the test is skipped, but in continuous integration there must be one."""
     program = shutil.which("chromium")
     if program is None:
         ((what, package),) = environment.BROWSER.values()
@@ -28,7 +28,7 @@ def chromium():
 
 
 class Opened:
-    """A page from disk, what it complained of and what it asked for."""
+    """A page opened from disk, with its console errors and its requests."""
 
     def __init__(self, browser, path, **context):
         self.page = browser.new_page(**context)
@@ -41,7 +41,7 @@ class Opened:
         self.page.wait_for_selector("section[data-ready=yes]", state="attached")
 
     def section(self, name):
-        """The section of a scene (its address), alive."""
+        """Return the section of a scene (by its address) with its picture drawn."""
         self.page.evaluate("name => document.getElementById(name).scrollIntoView()", name)
         self.page.wait_for_selector(f"#{name}[data-ready=yes]", state="attached")
         return self.page.locator(f"#{name}")

@@ -1,4 +1,4 @@
-"""The runs that the figures are drawn from, each computed once for all tests of a process."""
+"""The runs that the figures are drawn from, each computed once per test process."""
 
 from functools import cache
 
@@ -7,5 +7,5 @@ from sim.figures import runs
 
 @cache
 def pair(name):
-    """Circuit (integer model) and float64 of a scene, by its name in the figures."""
+    """Return the runs of a scene on the integer model and on float64, by its name in the figures."""
     return runs.pair(runs.load(name), backend="fixed")

@@ -31,7 +31,7 @@ def drawn(name, out):
 
 @pytest.fixture
 def short(monkeypatch):
-    """Films of three pictures."""
+    """Make films of three pictures."""
     monkeypatch.setattr(film, "FRAMES", 3)
 
 
@@ -51,13 +51,13 @@ def test_the_files_of_a_figure(name, short, tmp_path):
     assert tree.getroot().tag == "{http://www.w3.org/2000/svg}svg"
     with Image.open(tmp_path / f"{name}.gif") as gif:
         assert gif.n_frames == 3 and gif.info["loop"] == 0
-        shown = []
+        pictures = []
         for frame in range(3):
             gif.seek(frame)
-            shown.append((np.array(gif.convert("RGB")), gif.info["duration"]))
-    assert [duration for _, duration in shown] == [film.EVERY, film.EVERY, film.PAUSE]
-    assert not np.array_equal(shown[0][0], shown[1][0]) and not np.array_equal(shown[1][0], shown[2][0])
-    assert (shown[0][0][:3] == 255).all()  # white around
+            pictures.append((np.array(gif.convert("RGB")), gif.info["duration"]))
+    assert [duration for _, duration in pictures] == [film.EVERY, film.EVERY, film.PAUSE]
+    assert not any(np.array_equal(pictures[n][0], pictures[n + 1][0]) for n in range(2))
+    assert (pictures[0][0][:3] == 255).all()  # white around
 
 
 def test_the_same_runs_give_the_same_bytes(short, tmp_path):
@@ -71,7 +71,7 @@ def test_the_same_runs_give_the_same_bytes(short, tmp_path):
 
 
 def inches_per_mm(figure):
-    """Of every drawing of an object in a figure, in both directions."""
+    """Return the scale of every drawing of an object in a figure, in both directions."""
     size = figure.get_size_inches()
     for axes in figure.axes:
         if any(isinstance(each, PolyCollection) and each.get_array() is not None for each in axes.collections):
@@ -117,7 +117,7 @@ def test_one_colour_bar_that_holds_what_is_drawn(names, draw, shade):
 
 
 def test_the_colours_get_darker_all_the_way():
-    """So that they can be told apart in grey, and by whoever is blind to some colour."""
+    """Darkness alone must tell them apart, in grey and for colour-blind readers."""
     light = body.COLOURS(np.linspace(0, 1, 200))[:, :3] @ (0.2126, 0.7152, 0.0722)
     assert (np.diff(light) < 0.001).all() and light[0] > 0.95 and 0.1 < light[-1] < 0.3
 
@@ -246,7 +246,7 @@ def test_films_are_small(tmp_path):
 
 @pytest.mark.campaign
 def test_the_simulated_circuit_draws_the_same(tmp_path):
-    """Figure 1 has what no shipped scene has: the single edges."""
+    """Figure 1 is the test, because it has the single edges, which no shipped scene has."""
     circuit = make.compute(make.scenes(["figure-1"]), "rtl")
     for name, run in circuit.items():
         assert run.circuit.raw.same(pair(name).circuit.raw)

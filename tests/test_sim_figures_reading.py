@@ -1,4 +1,4 @@
-"""sim.figures.reading: what the figures show is what the theory and float64 say."""
+"""sim.figures.reading: the readings agree with theory and with float64."""
 
 import math
 from dataclasses import replace
@@ -38,13 +38,15 @@ def test_a_block_comes_back_as_in_float64(name):
     part = back.circuit / 0.025
     if name.startswith("rheological"):
         assert 0.4 < part < 0.6
-        assert back.scale == back.expected and residual.scale == residual.expected  # of itself, not of the press
+        assert (
+            back.scale == back.expected and residual.scale == residual.expected
+        )  # relative to itself, not to the press
     else:
         assert part == pytest.approx(float(name.startswith("viscoelastic")), abs=2e-3)
 
 
 def test_the_closed_form_is_that_of_the_press_that_was_made():
-    """At constant speed over t: D q tau / t (1 - exp(-t / tau)) exp(-hold / tau), (t / tau)^2 / 24 more."""
+    """At constant speed over t it is D q tau / t (1 - exp(-t / tau)) exp(-hold / tau), (t / tau)^2 / 24 above."""
     material = load("rheological").materials[0]
     q, tau, t = 35 / 38, 38 / 200, single_edge.PRESS * single_edge.DT
     exact = 0.025 * q * tau / t * (1 - math.exp(-t / tau)) * math.exp(-single_edge.HOLD * single_edge.DT / tau)

@@ -1,4 +1,4 @@
-"""sim.report: the page holds the numbers of compare.json and all that it draws, in one file."""
+"""sim.report: the page holds the figures of compare.json and all data that it draws, in one file."""
 
 import base64
 import json
@@ -8,19 +8,18 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 from report_objects import FLAT, SOLID, WEIGHT
-from sim_objects import MESHES, block, in_place_of_the_circuit
+from sim_objects import block, in_place_of_the_circuit
 
-from golden.mesh import mesh
 from sim import report
 from sim.backends.registry import BACKENDS
 from sim.backends.rtl import RtlBackend
 from sim.compare import compare
-from sim.report import pack, style, surface
-from sim.report.page import brief, least, percent, si, slug
+from sim.report import pack
+from sim.report.page import brief, percent, si
 from sim.results import energy
 from sim.results.face import watched
 
-SHOWN = {
+KEYS = {
     "dim",
     "nodes",
     "edges",
@@ -37,7 +36,7 @@ SCENES = FLAT, SOLID, WEIGHT
 
 
 class Page(HTMLParser):
-    """The page's figures by scene and key, its text, and what its scripts hold."""
+    """The page's figures by scene and key, its text, and the data in its scripts."""
 
     def __init__(self, text):
         super().__init__()
@@ -97,9 +96,9 @@ def entries(folder):
 def test_the_figures_are_those_of_the_json(page, entries):
     assert list(page.figures) == [scene.name for scene in SCENES] == [entry["scene"] for entry in entries]
     for entry in entries:
-        shown = page.figures[entry["scene"]]
-        assert shown.keys() >= SHOWN | {"cycles", "cycles_per_step", "occupancy"}
-        assert shown == {key: entry[key] for key in shown}
+        figures = page.figures[entry["scene"]]
+        assert figures.keys() >= KEYS | {"cycles", "cycles_per_step", "occupancy"}
+        assert figures == {key: entry[key] for key in figures}
         assert page.headroom[entry["scene"]] == [quantity["headroom_bits"] for quantity in entry["ranges"]]
         assert page.boards[entry["scene"]] == [board["board"] for board in entry["boards"]]
     assert "recovery" in page.figures[FLAT.name] and "recovery" not in page.figures["weight"]
@@ -107,11 +106,11 @@ def test_the_figures_are_those_of_the_json(page, entries):
 
 def test_the_figures_can_be_read(page, entries):
     for entry in entries:
-        for key in SHOWN:
+        for key in KEYS:
             assert brief(entry[key]) in page.text
         assert percent(entry["occupancy"]) in page.text
         assert si(entry["energy"]["dissipated"], "J") in page.text
-    assert page.text.count("energy of its weight") == 1  # of the one that stands under it
+    assert page.text.count("energy of its weight") == 1  # only in the scene with gravity
     assert page.text.count("passes") == 2 * len(SCENES)
 
 
@@ -123,7 +122,7 @@ def test_text_of_the_scene_is_text(page, folder):
 def test_it_is_one_file(folder):
     assert {path.name for path in folder.iterdir()} == {"index.html", "compare.json"}
     text = (folder / "index.html").read_text()
-    assert "http" not in text.replace("http://www.w3.org/2000/svg", "")  # the name of a language, not a place
+    assert "http" not in text.replace("http://www.w3.org/2000/svg", "")  # a namespace, not a link
 
 
 def test_a_scene_that_fails_says_so(tmp_path, entries, comparisons):
@@ -188,15 +187,15 @@ def test_what_is_drawn_can_be_had_again(page, comparisons):
 
 def test_many_frames_are_thinned_but_for_the_ends_of_phases():
     scene = block(steps=(601, 3, 700), every=1)
-    frames = pack.shown(scene)
+    frames = pack.frames_to_draw(scene)
     assert pack.MOST <= len(frames) <= pack.MOST + 3 and {0, 601, 604, 1304} <= set(frames.tolist())
-    assert len(pack.shown(block())) == len(block().frames)
+    assert len(pack.frames_to_draw(block())) == len(block().frames)
 
 
 def test_a_large_object_has_as_many_frames_as_there_is_room_for(monkeypatch):
     scene = block(dim=3, steps=(60, 20, 30), every=1)
     monkeypatch.setattr(pack, "BUDGET", 20_000)
-    frames = pack.shown(scene)
+    frames = pack.frames_to_draw(scene)
     assert 2 * len(scene.phases) < len(frames) < 40
     assert len(frames) * 4 * (scene.mesh.points.size + len(scene.mesh.edges)) < 1.1 * pack.BUDGET
 
@@ -210,93 +209,3 @@ def test_ratios_that_hardly_change_have_a_scale_all_the_same():
 def test_equal_runs_are_no_distance_apart():
     same = pack.centred(np.zeros((2, 3, 2)), 16)
     assert same["step"] == 1.0 and not unpacked(same["data"], "<i2", -1).any()
-
-
-def test_colours_run_from_dark_to_light_or_through_grey():
-    for name, scale in style.scales().items():
-        light = [np.dot(scale(n / 20)[:3], [0.2126, 0.7152, 0.0722]) for n in range(21)]
-        assert (np.diff(light) > 0).all() if name != "force" else np.argmax(light) == 10
-
-
-@pytest.mark.parametrize(
-    "value, text",
-    [
-        (True, "yes"),
-        (False, "no"),
-        (None, "–"),
-        (0.0, "0"),
-        (3.21e-6, "3.2e-6"),
-        (0.25, "0.25"),
-        (12.345, "12.3"),
-        (7, "7"),
-        (1234567, "1\u202f234\u202f567"),
-    ],
-)
-def test_brief(value, text):
-    assert brief(value) == text
-
-
-@pytest.mark.parametrize(
-    "value, unit, text",
-    [
-        (0.01234, "N", "12.3 mN"),
-        (-2e-7, "m", "−200 nm"),
-        (1.0, "J", "1 J"),
-        (0.0, "J", "0 J"),
-        (0.75, "", "0.75"),
-        (0.99996, "N", "1000 mN"),
-        (54321.0, "N", "54300 N"),
-    ],
-)
-def test_si(value, unit, text):
-    assert si(value, unit) == text
-
-
-def test_the_least_headroom_is_that_of_what_depends_on_the_scene():
-    ranges = [
-        {"unit": "", "headroom_bits": 0.0},
-        {"unit": "N", "headroom_bits": 2.0},
-        {"unit": "m", "headroom_bits": 1.5},
-        {"unit": "m/s", "headroom_bits": None},
-    ]
-    assert least(ranges) == {"unit": "m", "headroom_bits": 1.5}
-
-
-@pytest.mark.parametrize("part, text", [(0.5041, "50.4 %"), (-1e-9, "0.0 %"), (1.0, "100.0 %")])
-def test_percent(part, text):
-    assert percent(part) == text
-
-
-@pytest.mark.parametrize("name, text", [("plastic-3d", "plastic-3d"), ("Wet clay / 2", "wet-clay-2"), ("//", "scene")])
-def test_slug(name, text):
-    assert slug(name) == text
-
-
-@pytest.mark.parametrize("tetrahedra", [5, 6])
-def test_the_surface_of_a_solid_looks_outwards(tetrahedra):
-    m = mesh.box((4, 3, 5), (3.0, 2.0, 4.0), tetrahedra)
-    faces = surface.surface(m)
-    a, b, c = m.points[faces].transpose(1, 0, 2)
-    normals = np.cross(b - a, c - a)
-    assert np.linalg.norm(normals, axis=1).sum() / 2 == pytest.approx(2 * (3 * 2 + 2 * 4 + 3 * 4))
-    assert (np.einsum("ij,ij->i", normals, (a + b + c) / 3 - m.points.mean(axis=0)) > 0).all()
-    seen, light = surface.visible(m.points, faces)
-    assert len(seen) == len(faces) // 2 and (0 <= light).all() and (light <= 1).all()
-    depth = m.points[seen].sum(axis=1) @ surface.VIEW
-    assert (np.diff(depth) >= 0).all()
-
-
-def test_the_picture_plane_is_square_to_the_view():
-    axes = np.stack([surface.RIGHT, surface.UP, surface.VIEW])
-    np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
-    assert surface.UP[2] > 0
-    assert np.linalg.norm(surface.LIGHT) == pytest.approx(1, abs=0.01)
-
-
-def test_outlines():
-    m = MESHES[2]
-    border = surface.outline(m)
-    assert np.linalg.norm(border[:, 1] - border[:, 0], axis=1).sum() == pytest.approx(2 * (0.1 + 0.08))
-    box = surface.outline(MESHES[3])
-    assert len(box) == 9
-    assert sorted(np.linalg.norm(box[:, 1] - box[:, 0], axis=1)) == pytest.approx([0.06] * 3 + [0.08] * 3 + [0.1] * 3)

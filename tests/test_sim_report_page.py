@@ -48,9 +48,9 @@ def browser():
 
 @pytest.fixture
 def opened(browser, folder):
-    shown = Opened(browser, folder / "index.html")
-    yield shown
-    shown.page.close()
+    page = Opened(browser, folder / "index.html")
+    yield page
+    page.page.close()
 
 
 @pytest.mark.parametrize("ci, outcome", [("true", pytest.fail.Exception), (None, pytest.skip.Exception)])
@@ -74,21 +74,21 @@ def test_it_opens_from_disk_without_a_word(opened):
 
 
 def soon(browser, path):
-    """The page, and how long it took until it could be used; the better of two times, as other work may be going on."""
+    """Return the page, and the time until it could be used: the better of two, as the machine may be busy."""
     taken = []
     for _ in range(2):
         began = time.perf_counter()
-        shown = Opened(browser, path)
-        shown.page.keyboard.press("Tab")
-        assert shown.page.evaluate("document.activeElement.tagName") == "A"
+        page = Opened(browser, path)
+        page.page.keyboard.press("Tab")
+        assert page.page.evaluate("document.activeElement.tagName") == "A"
         taken.append(time.perf_counter() - began)
-    return shown, min(taken)
+    return page, min(taken)
 
 
 def test_it_is_interactive_soon(browser, folder):
-    shown, taken = soon(browser, folder / "index.html")
+    page, taken = soon(browser, folder / "index.html")
     assert taken < INTERACTIVE
-    shown.page.close()
+    page.page.close()
 
 
 @pytest.mark.campaign
@@ -97,12 +97,12 @@ def test_all_shipped_scenes_are_interactive_soon_and_not_large(browser, tmp_path
     assert len(scenes) >= 10
     report.write([report.Section.of(complete(scene, {}, ("float", "fixed"))) for scene in scenes], tmp_path)
     size = (tmp_path / "index.html").stat().st_size
-    shown, taken = soon(browser, tmp_path / "index.html")
+    page, taken = soon(browser, tmp_path / "index.html")
     print(f"{len(scenes)} scenes: {size / 1e6:.1f} MB, interactive after {taken:.2f} s")
     for scene in scenes:
-        shown.section(slug(scene.name))
-    assert size <= LARGEST and taken < INTERACTIVE and shown.complaints == []
-    shown.page.close()
+        page.section(slug(scene.name))
+    assert size <= LARGEST and taken < INTERACTIVE and page.complaints == []
+    page.page.close()
 
 
 @pytest.mark.parametrize("name", [FLAT_ID, SOLID_ID])
@@ -244,14 +244,14 @@ def test_the_numbers_on_it_are_those_of_the_json(opened, folder):
     entries = json.loads((folder / "compare.json").read_text())
     for entry in entries:
         section = opened.section(slug(entry["scene"]))
-        shown = opened.page.evaluate(
+        figures = opened.page.evaluate(
             """scene => [...document.querySelectorAll("[data-key]")]
             .filter(part => part.closest("[data-scene]").dataset.scene === scene)
             .map(part => [part.dataset.key, JSON.parse(part.dataset.value)])""",
             entry["scene"],
         )
-        assert {key for key, _ in shown} >= {"max_dx_rel", "bound", "saturations", "cycles", "occupancy", "lanes"}
-        assert all(value == entry[key] for key, value in shown)
+        assert {key for key, _ in figures} >= {"max_dx_rel", "bound", "saturations", "cycles", "occupancy", "lanes"}
+        assert all(value == entry[key] for key, value in figures)
         section.locator(".view canvas").focus()
         opened.page.keyboard.press("End")
         read = section.locator("[data-chart=apart] .key b").text_content()
@@ -272,7 +272,7 @@ def test_the_ranges_are_drawn_when_they_are_opened(opened, folder):
 
 
 def test_a_narrow_window_needs_no_sideways_scrolling(browser, folder):
-    shown = Opened(browser, folder / "index.html", viewport={"width": 390, "height": 800})
-    shown.section(SOLID_ID)
-    assert shown.page.evaluate("document.documentElement.scrollWidth") <= 390
-    shown.page.close()
+    page = Opened(browser, folder / "index.html", viewport={"width": 390, "height": 800})
+    page.section(SOLID_ID)
+    assert page.page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.page.close()

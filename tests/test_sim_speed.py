@@ -1,4 +1,4 @@
-"""The compiled float model is the golden model, and its step times are taken as they are described."""
+"""The compiled float model gives the golden model's results, and step times are taken as described."""
 
 import os
 import re
@@ -15,12 +15,12 @@ from golden.support.errors import InputError
 from sim.speed import arrays, meshes, timing
 from sim.speed.compiled import CompiledModel
 
-DOUGH = materials.rheological("dough", 200.0, 0.5, 20.0, a_min=0.495, a_max=0.505)  # it wants to leave it
+DOUGH = materials.rheological("dough", 200.0, 0.5, 20.0, a_min=0.495, a_max=0.505)  # its ratio reaches the limits
 MIXED = DOUGH, MATERIALS["viscoelastic"], MATERIALS["plastic"]
 
 
 def differences(model, golden):
-    """Of positions by the object's size, of velocities by the largest, of ratios."""
+    """Return the differences of positions by the object's size, of velocities by the largest, and of ratios."""
     largest = np.abs(golden.v).max()
     return (
         np.abs(model.x - golden.x).max() / golden.scene.load.size,

@@ -1,4 +1,4 @@
-"""python -m sim bench: what it writes and shows, what it refuses, and where the circuit's cycles come from."""
+"""python -m sim bench: its files and tables, its refusals, and the source of the circuit's cycles."""
 
 import json
 import sys
@@ -27,7 +27,7 @@ KEYS = [
 
 
 def software(scene, steps, progress):
-    """Stands in for `sim.speed.timing.software`."""
+    """Stand in for `sim.speed.timing.software`."""
     times = {
         "threads": 2,
         "steps": steps,
@@ -44,7 +44,7 @@ def software(scene, steps, progress):
 
 @pytest.fixture
 def quick(monkeypatch):
-    """Nothing is timed."""
+    """Replace the timing of software."""
     monkeypatch.setattr(timing, "software", software)
     monkeypatch.setattr(
         cycles, "cycles_per_step", lambda scene, lanes, updates: 4 * len(scene.mesh.edges) // lanes + 250
@@ -102,8 +102,8 @@ def test_a_machine_that_others_use_is_noticed(quick, tmp_path, capsys, monkeypat
 def test_progress_on_a_terminal(quick, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert main(["bench", "--meshes", "3x3", "--out", str(tmp_path / "bench.json")]) == 0
-    shown = capsys.readouterr().err.split("\r\x1b[K")
-    assert shown == ["", *(f"3x3: {name} ..." for name in timing.SOFTWARE.values()), ""]
+    lines = capsys.readouterr().err.split("\r\x1b[K")
+    assert lines == ["", *(f"3x3: {name} ..." for name in timing.SOFTWARE.values()), ""]
 
 
 @pytest.mark.parametrize(

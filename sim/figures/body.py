@@ -1,4 +1,4 @@
-"""An object in a picture: faces coloured by strain or by ratio as the circuit has them, float64's nodes upon them."""
+"""An object in a picture: faces coloured by strain or by ratio as the circuit has them, float64's nodes on top."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from sim.figures import paper
 from sim.figures.runs import Pair
 from sim.report.surface import once, outline, projected, surface, visible
 
-# from nearly white to dark blue, without the darkest, upon which a mesh cannot be seen: one hue after the other gets
-# darker, so it reads in grey as well, and by whoever is blind to some colour
+# from nearly white to dark blue, without the darkest, on which a mesh cannot be seen; it gets steadily darker, so it
+# also works in grey and for colour-blind readers
 COLOURS = ListedColormap(colormaps["YlGnBu"](np.linspace(0.02, 0.85, 256)), "strain")
 
 
@@ -31,17 +31,17 @@ class Shade:
     of_edges: Callable[[Trajectory, int], np.ndarray]  # (E,) in a frame
     of_sides: Callable[[np.ndarray], np.ndarray]  # (S,) of faces from (S, 3) of their sides
     ticks: tuple[float, ...]
-    extend: str = "neither"  # "both": the bar's ends say that there is more beyond
+    extend: str = "neither"  # "both": the bar's ends show that values lie beyond them
 
     def bar(self, figure, axes) -> None:
-        """The colour bar, in axes of its own."""
+        """Draw the colour bar in axes of its own."""
         bar = figure.colorbar(ScalarMappable(self.norm, COLOURS), cax=axes, ticks=self.ticks, extend=self.extend)
         bar.set_label(self.label)
         bar.outline.set_linewidth(0.6)
 
 
 def strain(run: Trajectory, frame: int) -> np.ndarray:
-    """(E,) %: how much longer each edge is than in the first frame."""
+    """Return (E,) in %, how much longer each edge is than in the first frame."""
     start, now = (np.linalg.norm(x[run.edges[:, 1]] - x[run.edges[:, 0]], axis=1) for x in run.x[[0, frame]])
     return 100 * (now / start - 1)
 
@@ -64,7 +64,7 @@ RATIO = Shade(
 
 
 class Body:
-    """A drawing of an object that can go on to another frame. Lengths in mm."""
+    """A drawing of an object that can move to another frame. Lengths in mm."""
 
     def __init__(self, axes, pair: Pair, shade: Shade, frame: int = 0):
         mesh = pair.scene.mesh
@@ -84,19 +84,19 @@ class Body:
         values = self._shade.of_edges(run, frame)[sides(mesh, seen)]
         self._painted.set_verts(projected(run.x[frame])[seen] * 1e3)
         self._painted.set_array(self._shade.of_sides(values))
-        shown = border(mesh) if mesh.dim == 2 else np.unique(seen)
-        self._nodes.set_data(*(projected(self._pair.float64.trajectory.x[frame, shown]) * 1e3).T)
+        nodes = border(mesh) if mesh.dim == 2 else np.unique(seen)
+        self._nodes.set_data(*(projected(self._pair.float64.trajectory.x[frame, nodes]) * 1e3).T)
         self._outline.set_visible(frame > 0)
 
 
 def sides(mesh: Mesh, faces: np.ndarray) -> np.ndarray:
-    """(S, 3) the edges between the corners of each face."""
+    """Return (S, 3), the edges between the corners of each face."""
     n = len(mesh.points)
     i, j = np.sort(faces[:, [(0, 1), (1, 2), (2, 0)]], axis=2).transpose(2, 0, 1)
     return np.searchsorted(mesh.edges @ (n, 1), i * n + j)
 
 
 def border(mesh: Mesh) -> np.ndarray:
-    """The nodes on the border of a flat mesh."""
+    """Return the nodes on the border of a flat mesh."""
     edges = sides(mesh, mesh.cells).ravel()
     return np.unique(mesh.edges[edges[once(edges[:, None])]])

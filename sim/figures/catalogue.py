@@ -1,4 +1,4 @@
-"""The figures by name: what each is drawn from, what draws it, what is read from it."""
+"""The figures by name: their scenes, the module that draws each, and the numbers that are read from it."""
 
 from __future__ import annotations
 
@@ -57,7 +57,8 @@ FIGURES = {
 
 
 def chosen(names: list[str]) -> list[str]:
-    """The figures of these names, all for none, in the order of `FIGURES`. Raises `InputError` for another name."""
+    """Return the figures of these names, or all if there are none, in the order of `FIGURES`. Raises `InputError` for
+    another name."""
     for name in names:
         if name not in FIGURES:
             raise InputError(f"NAME must be one of {', '.join(FIGURES)}, not {name!r}")

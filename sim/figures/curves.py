@@ -1,4 +1,4 @@
-"""Figure 1: what objects of the three materials do when they are pressed, held and let go, over time."""
+"""Figure 1: objects of the three materials over time, as they are pressed, held and let go."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from sim.figures.parts import Parts
 from sim.figures.runs import EDGE, Pair
 from sim.report import style
 
-SHOWN, PRESSED = (-0.27, 0.6), (-0.27, 0.06)  # s around the release: of the way, of the force
+WAY, PRESS = (-0.27, 0.6), (-0.27, 0.06)  # s around the release, on the axes of deformation and of force
 CLOSED = {
     "linestyle": "none",
     "marker": "D",
@@ -29,7 +29,7 @@ CLOSED = {
 
 
 def draw(pairs: list[Pair]) -> Figure:
-    """Deformation and force over time, above of single edges, below of blocks."""
+    """Draw deformation and force over time: single edges above, blocks below."""
     figure = Figure((paper.WIDTH, 4.75))
     for row, (kind, name, bottom) in enumerate(zip(objects(pairs), ("single edge", "block"), (2.86, 0.7), strict=True)):
         way, force = (paper.place(figure, left, bottom, width, 1.6) for left, width in ((0.42, 2.9), (4.92, 2.1)))
@@ -38,7 +38,7 @@ def draw(pairs: list[Pair]) -> Figure:
         for pair in kind:
             over_time(way, pair, deformation(pair))
             over_time(force, pair, pair.face.force)
-        for axes, limits in ((way, SHOWN), (force, PRESSED)):
+        for axes, limits in ((way, WAY), (force, PRESS)):
             time_axis(axes, limits)
             if row:
                 axes.set_xlabel("time since the release (s)")
@@ -62,31 +62,31 @@ def draw(pairs: list[Pair]) -> Figure:
 
 
 def deformation(pair: Pair) -> Callable[[Trajectory], np.ndarray]:
-    """What gives (F,) mm of a run: how deep the face is pressed."""
+    """Return a function from a run to (F,) in mm, how deep the face is pressed."""
     return lambda run: reading.deformation(pair, run) * 1e3
 
 
 def objects(pairs: list[Pair]) -> tuple[list[Pair], list[Pair]]:
-    """The single edges, and the blocks."""
+    """Return the single edges, and the blocks."""
     edges = [pair for pair in pairs if pair.scene.name.startswith(EDGE)]
     return edges, [pair for pair in pairs if pair not in edges]
 
 
 class Dot:
-    """A point that goes along a curve of (F,) values over (F,) times."""
+    """A point that moves along a curve of (F,) values over (F,) times."""
 
     def __init__(self, axes, t: np.ndarray, values: np.ndarray, colour: str):
         self._t, self._values = t, values
         (self._dot,) = axes.plot([], [], "o", markersize=5.5, color=colour, markeredgecolor="white", zorder=5)
 
     def show(self, t: float) -> None:
-        """Go to a time; outside of the curve there is none."""
+        """Move to a time; outside the curve the point is hidden."""
         within = self._t[0] <= t <= self._t[-1] + 1e-9
         self._dot.set_data(([t], [np.interp(t, self._t, self._values)]) if within else ([], []))
 
 
 def over_time(axes, pair: Pair, quantity: Callable[[Trajectory], np.ndarray]) -> Dot:
-    """A quantity of the circuit's run over time, and float64's, wide and pale, beneath it; a dot for films."""
+    """Draw a quantity of the circuit over time with float64's, wide and pale, below it; return a dot for films."""
     line = paper.MATERIALS[material(pair)]
     circuit, float64 = pair.trajectories
     t, values = since_release(pair), quantity(circuit)
@@ -97,7 +97,7 @@ def over_time(axes, pair: Pair, quantity: Callable[[Trajectory], np.ndarray]) ->
 
 
 def time_axis(axes, limits: tuple[float, float]) -> None:
-    """Seconds around the release, which is marked."""
+    """Draw an axis of seconds around the release, which is marked."""
     style.quiet(axes)
     axes.set_xlim(*limits)
     axes.xaxis.set_major_locator(MultipleLocator(0.1))
@@ -105,23 +105,23 @@ def time_axis(axes, limits: tuple[float, float]) -> None:
 
 
 def material(pair: Pair) -> str:
-    """The name of a scene without what says which object it is of."""
+    """Return the material in a scene's name, without the parts that name the object."""
     return pair.scene.name.removeprefix(EDGE).removesuffix("-3d")
 
 
 def since_release(pair: Pair) -> np.ndarray:
-    """(F,) s: before the release below 0."""
+    """Return (F,) in s since the release, negative before it."""
     t = pair.circuit.trajectory.t
     return t - t[pair.released]
 
 
 def labels(axes, pairs: list[Pair]) -> None:
-    """What stays and what came back, beside the end of each curve."""
+    """Write residual and bounce-back beside the end of each curve."""
     for pair in pairs:
         back, residual = reading.press(pair)
         axes.annotate(
             f"{material(pair)}\nresidual {paper.mm(residual.circuit)}\nbounce-back {paper.mm(back.circuit)}",
-            (SHOWN[1], residual.circuit * 1e3),
+            (WAY[1], residual.circuit * 1e3),
             (7, 0),
             textcoords="offset points",
             va="center",
@@ -134,13 +134,13 @@ def labels(axes, pairs: list[Pair]) -> None:
 
 
 def film(pairs: list[Pair]) -> Film:
-    """The edges, each with its two parts, and the blocks, as they move; beside them how deep they are pressed."""
+    """Make the film: edges with their two parts and blocks as they move, and beside them how deep they are pressed."""
     figure = Figure((7.2, 4.3))
     bodies, dots = [], []
     for kind, bottom in zip(objects(pairs), (2.5, 0.55), strict=True):
         way = paper.place(figure, 4.5, bottom, 2.55, 1.45)
         way.set_title("deformation (mm)", loc="left", pad=3)
-        time_axis(way, SHOWN)
+        time_axis(way, WAY)
         dots += [over_time(way, pair, deformation(pair)) for pair in kind]
         for number, pair in enumerate(kind):
             axes = paper.object_axes(figure, 0.1 + 1.36 * number, bottom - 0.05, (-10, 110), (-5, 110), 0.0113)
@@ -154,11 +154,12 @@ def film(pairs: list[Pair]) -> Film:
     ):
         figure.text(0.1 / 7.2, height / 4.3, text, fontsize=8)
     clock = figure.text(4.5 / 7.2, 0.08 / 4.3, "", fontsize=9)
-    return Film(figure, moving(bodies, dots, clock), *SHOWN)
+    return Film(figure, moving(bodies, dots, clock), *WAY)
 
 
 def moving(bodies, dots, clock) -> Callable[[float], None]:
-    """What makes drawings, each with its pair of runs, dots on curves and a clock show a time since the release (s)."""
+    """Return a function that sets drawings (each with its pair of runs), dots on curves and a clock to a time since the
+    release (s)."""
 
     def show(t: float) -> None:
         for pair, body in bodies:

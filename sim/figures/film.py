@@ -16,13 +16,13 @@ from golden.support.files import atomic_file
 from sim.figures import body, paper
 
 DPI = 100
-FRAMES, EVERY, PAUSE = 48, 100, 1500  # pictures, ms between two of them, ms that the last one stays
-GREYS, SHADES = 16, 48  # of all films
+FRAMES, EVERY, PAUSE = 48, 100, 1500  # pictures, ms for each, ms for the last one
+GREYS, SHADES = 16, 48  # colours in the palette of all films
 
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """A figure, what makes it show the time t (s), and the times to show from the first to the last."""
+    """A figure, the function that makes it show a time (s), and the first and last time to show."""
 
     figure: Figure
     show: Callable[[float], None]
@@ -55,7 +55,7 @@ def save(film: Film, path: Path, progress: Callable[[int], object] | None = None
 
 
 def picture(film: Film) -> Image.Image:
-    """The figure as it is now."""
+    """Return the figure as it is now."""
     film.figure.set_dpi(DPI)
     canvas = FigureCanvasAgg(film.figure)
     canvas.draw()
@@ -63,8 +63,8 @@ def picture(film: Film) -> Image.Image:
 
 
 def palette() -> Image.Image:
-    """The colours of all films: what stays still is the same in each picture, which a GIF keeps once, and the colour
-    bar's shades stay what they are."""
+    """Return one palette for all films: what stands still then has the same colours in each picture, which a GIF stores
+    once, and the colour bar keeps its shades."""
     greys = np.linspace(0, 1, GREYS)[:, None].repeat(3, axis=1)
     shades = body.COLOURS(np.linspace(0, 1, SHADES))[:, :3]
     lines = np.array([to_rgb(colour) for colour in paper.LINES])

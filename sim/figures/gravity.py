@@ -24,7 +24,7 @@ LINES = {
 
 
 def draw(pairs: list[Pair]) -> Figure:
-    """A row a damper, coloured by ratio; beside them the height of both blocks over time."""
+    """Draw a row for each damper, coloured by ratio, and beside them the height of both blocks over time."""
     row = (Y[1] - Y[0]) * SCALE + 0.27
     figure = Figure((paper.WIDTH, row * len(pairs) + 0.32))
     for number, pair in enumerate(pairs):
@@ -57,7 +57,7 @@ def draw(pairs: list[Pair]) -> Figure:
 
 
 def heights(axes, pairs: list[Pair]) -> list[Dot]:
-    """The mean height of the top over time, and a dot on each curve for films."""
+    """Draw the mean height of the top over time, and return a dot on each curve for films."""
     dots = []
     for pair in pairs:
         line = LINES[pair.scene.name]
@@ -84,7 +84,7 @@ def heights(axes, pairs: list[Pair]) -> list[Dot]:
 
 
 def film(pairs: list[Pair]) -> Film:
-    """Both blocks in motion, and their heights over time."""
+    """Make the film: both blocks in motion, and their heights over time."""
     figure = Figure((7.2, 2.4))
     bodies = []
     for number, pair in enumerate(pairs):

@@ -1,4 +1,4 @@
-"""From names of figures to the files: runs, pictures, films, and the numbers that they show."""
+"""Make the files of figures from their names: runs, pictures, films, and the numbers that they show."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ from sim.support import batch
 
 DATA = "figures.json"
 DPI = 300
-PICTURES = film.FRAMES + 1  # of a figure, those of its film included
+PICTURES = film.FRAMES + 1  # of a figure: itself and its film's
 
 
 def scenes(names: list[str]) -> list[Scene]:
-    """What these figures are drawn from, each once."""
+    """Return the scenes of these figures, each once."""
     wanted = dict.fromkeys(scene for name in names for scene in FIGURES[name].scenes)
     return [runs.load(name) for name in wanted]
 
 
-def compute(loaded: list[Scene], backend: str, shown: Callable | None = None) -> dict[str, Pair]:
-    """The runs of the scenes, by name; ``shown`` as of `sim.support.batch.over_scenes`."""
-    pairs = batch.over_scenes(partial(runs.pair, backend=backend), loaded, shown)
+def compute(loaded: list[Scene], backend: str, report_progress: Callable | None = None) -> dict[str, Pair]:
+    """Return the runs of the scenes by name; `sim.support.batch.over_scenes` describes ``report_progress``."""
+    pairs = batch.over_scenes(partial(runs.pair, backend=backend), loaded, report_progress)
     return {pair.scene.name: pair for pair in pairs}
 
 
-def draw(name: str, pairs: dict[str, Pair], out: Path, shown: Callable[[int], object] | None = None) -> dict:
-    """Write NAME.png, NAME.svg and NAME.gif, and give the figure's object of figures.json.
+def draw(name: str, pairs: dict[str, Pair], out: Path, report_progress: Callable[[int], object] | None = None) -> dict:
+    """Write NAME.png, NAME.svg and NAME.gif, and return the figure's object of figures.json.
 
-    The same runs give the same bytes. ``shown(pictures drawn)``, up to `PICTURES`.
+    The same runs give the same bytes. ``report_progress(pictures drawn)`` is called up to `PICTURES`.
     """
     figure = FIGURES[name]
     module = importlib.import_module(f"sim.figures.{figure.module}")
@@ -49,9 +49,11 @@ def draw(name: str, pairs: dict[str, Pair], out: Path, shown: Callable[[int], ob
         for suffix, settings in (("png", {"dpi": DPI}), ("svg", {"metadata": {"Date": None}})):
             with atomic_file(out / f"{name}.{suffix}") as file:
                 still.savefig(file, format=suffix, **settings)
-        if shown:
-            shown(1)
-        film.save(module.film(used), out / f"{name}.gif", shown and (lambda drawn: shown(1 + drawn)))
+        if report_progress:
+            report_progress(1)
+        film.save(
+            module.film(used), out / f"{name}.gif", report_progress and (lambda drawn: report_progress(1 + drawn))
+        )
     return {
         "title": figure.title,
         "backend": used[0].circuit.backend,
@@ -63,12 +65,12 @@ def draw(name: str, pairs: dict[str, Pair], out: Path, shown: Callable[[int], ob
 
 
 def readings(name: str, pair: Pair) -> list[reading.Reading]:
-    """What is read from a scene of a figure."""
+    """Return the readings of a figure's scene."""
     return [*FIGURES[name].read(pair), reading.apart(pair)]
 
 
 def shortcomings(names: list[str], pairs: dict[str, Pair]) -> list[str]:
-    """What keeps the figures from passing, in words, each once; nothing when they pass."""
+    """Return, in words and each once, the reasons why the figures don't pass; none if they do."""
     wrong = []
     for name in names:
         for scene in FIGURES[name].scenes:
@@ -79,8 +81,7 @@ def shortcomings(names: list[str], pairs: dict[str, Pair]) -> list[str]:
 
 
 def curves(pair: Pair) -> dict:
-    """What the figures show over time, in SI units; a force that the circuit doesn't know, before its first step, is
-    null."""
+    """Return the curves of the figures in SI units; the circuit's force before its first step is unknown: null."""
     quantities = {"deformation": partial(reading.deformation, pair), "force": pair.face.force}
     if pair.scene.dim == 3:
         quantities["bulge"] = partial(reading.bulge_over_time, pair)
@@ -96,7 +97,7 @@ def _numbers(values: np.ndarray) -> list[float | None]:
 
 
 def earlier(out: Path) -> dict:
-    """The figures that an earlier call left in the folder. Raises `InputError` if their numbers cannot be read."""
+    """Return the figures that an earlier call left in the folder. Raises `InputError` if their file can't be read."""
     path = out / DATA
     if not path.exists():
         return {}

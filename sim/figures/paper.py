@@ -1,4 +1,4 @@
-"""How all figures look: sizes in inches and points, made to be read on paper and in black and white."""
+"""The look of all figures: sizes in inches and points, to be read on paper and in black and white."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SETTINGS = {
     "path.simplify": False,
 }
 
-BLUE, GREEN, RED, SKY = "#0072b2", "#009e73", "#d55e00", "#56b4e9"  # of Okabe and Ito
+BLUE, GREEN, RED, SKY = "#0072b2", "#009e73", "#d55e00", "#56b4e9"  # Okabe and Ito's colours
 LINES = BLUE, GREEN, RED, SKY
 # by colour, by dashes, and by what stands beside the curve
 MATERIALS = {
@@ -47,13 +47,13 @@ FLOAT = {"linewidth": 4.2, "alpha": 0.3, "linestyle": "-", "solid_capstyle": "ro
 
 
 def place(figure: Figure, left: float, bottom: float, width: float, height: float):
-    """Axes at a place and of a size in inches."""
+    """Return axes at a position and of a size in inches."""
     w, h = figure.get_size_inches()
     return figure.add_axes((left / w, bottom / h, width / w, height / h))
 
 
 def object_axes(figure: Figure, left: float, bottom: float, x: tuple, y: tuple, scale: float = SCALE):
-    """Bare axes for an object between these limits (mm), `scale` inches per mm in both directions."""
+    """Return bare axes for an object between these limits (mm), ``scale`` inches per mm in both directions."""
     axes = place(figure, left, bottom, (x[1] - x[0]) * scale, (y[1] - y[0]) * scale)
     axes.set(xlim=x, ylim=y)
     axes.set_axis_off()
@@ -61,28 +61,28 @@ def object_axes(figure: Figure, left: float, bottom: float, x: tuple, y: tuple, 
 
 
 def scale_bar(axes, x: float, y: float, length: float = 20) -> None:
-    """A line of so many mm, with its length beside it."""
+    """Draw a line of so many mm with its length beside it."""
     axes.plot([x, x + length], [y, y], color=INK, linewidth=1.6, solid_capstyle="butt")
     axes.annotate(f"{length:g} mm", (x + length, y), (3, 0), textcoords="offset points", va="center", fontsize=7)
 
 
 def title(axes, text: str) -> None:
-    """Above an object, from the left."""
+    """Write a title above an object, from the left."""
     axes.set_title(text, x=0.02, ha="left", pad=2)
 
 
 def mm(length: float) -> str:
-    """A length in m as mm with two digits behind the point; no negative zero."""
+    """Return a length in m as mm with two decimals; no negative zero."""
     return minus(f"{round(length * 1e3, 2) + 0:.2f} mm")
 
 
 def minus(text: str) -> str:
-    """With a minus that can be seen."""
+    """Return the text with typographic minus signs."""
     return text.replace("-", "\N{MINUS SIGN}")
 
 
 def arrow(axes, x: float, low: float, high: float, text: str) -> None:
-    """A dimension between two heights, its text beside it; none where there is no room for an arrow."""
+    """Draw a dimension between two heights with its text beside it, or only the text where an arrow has no room."""
     if high - low > 2:
         axes.annotate(
             "",
@@ -101,6 +101,6 @@ def arrow(axes, x: float, low: float, high: float, text: str) -> None:
 
 
 def note(figure: Figure, text: str) -> None:
-    """A line below a figure."""
+    """Write a line below a figure."""
     w, h = figure.get_size_inches()
     figure.text(0.1 / w, 0.06 / h, text, fontsize=7, color=PALE, va="bottom")

@@ -11,7 +11,7 @@ MIDDLE = 50  # mm, where the edge stands in its axes
 
 
 class Parts:
-    """A drawing of an edge on the circuit that can go on to another frame; float64's ends upon it. Lengths in mm."""
+    """A drawing of the circuit's edge with float64's ends on top, which can move to another frame. Lengths in mm."""
 
     def __init__(self, axes, pair: Pair):
         self._pair = pair

@@ -12,11 +12,11 @@ from sim.figures.runs import Pair
 from sim.results.comparison import power
 
 X, Y = (-10, 112), (-8, 103)  # mm, around the block
-ROOM = 90  # mm beside the last drawing, for what was measured
+ROOM = 90  # mm beside the last drawing, for the measurements
 
 
 def draw(pairs: list[Pair]) -> Figure:
-    """The three states of a block, all coloured by strain on one scale and drawn in one scale."""
+    """Draw the three states of a block, coloured by strain, with one colour scale and one length scale."""
     (pair,) = pairs
     figure = Figure((paper.WIDTH, 2.15))
     frames = [0, pair.released, len(pair.circuit.trajectory.t) - 1]
@@ -40,7 +40,7 @@ def draw(pairs: list[Pair]) -> Figure:
 
 
 def measured(axes, pair: Pair) -> None:
-    """Bounce-back and residual as dimensions beside the block."""
+    """Draw bounce-back and residual as dimensions beside the block."""
     back, residual = (r.circuit for r in reading.press(pair))
     right, top = pair.scene.mesh.points.max(axis=0) * 1e3
     final, pressed = top - residual * 1e3, top - (residual + back) * 1e3
@@ -51,7 +51,7 @@ def measured(axes, pair: Pair) -> None:
 
 
 def film(pairs: list[Pair]) -> Film:
-    """The block in motion; beside it how deep it is pressed, and with which force."""
+    """Make the film: the block in motion, and beside it how deep it is pressed and with which force."""
     (pair,) = pairs
     figure = Figure((6.4, 2.75))
     axes = paper.object_axes(figure, 0.05, 0.1, X, (Y[0], 112), 0.0205)  # it swings
@@ -82,6 +82,6 @@ def film(pairs: list[Pair]) -> Film:
 
 
 def doing(pair: Pair, t: float) -> str:
-    """The name of the phase at the time t (s)."""
+    """Return the name of the phase at the time t (s)."""
     frame = pair.frame(t)
     return pair.scene.phases[int(np.searchsorted(pair.scene.end_frames, max(frame, 1)))].name

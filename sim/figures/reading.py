@@ -1,4 +1,4 @@
-"""What is read from the figures' data: each measurement in one place, with what it must be equal to."""
+"""The measurements that are read from the figures' data, each with the value that it is compared with."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from sim.figures.runs import EDGE, Pair
 from sim.results.comparison import BOUND
 
 RECOVERY, BULGE = 1e-3, 1e-4
-"""Largest differences that pass: of bounce-back and residual, and of the bulge of a side by the object's size."""
+"""Largest differences that pass: of bounce-back and residual, and of a side's bulge as part of the object's size."""
 
-SMALL = 0.01  # of a press: what is smaller is compared by the press
+SMALL = 0.01  # of a press: a smaller value is compared as a part of the press
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A quantity of a run of the circuit, of float64, and what it is held against; all in ``unit``."""
+    """A quantity of the circuit's run, of float64's, and the value that it is compared with; all in ``unit``."""
 
     scene: str
     quantity: str
@@ -29,13 +29,13 @@ class Reading:
     float64: float
     against: str  # "closed form" or "float64"
     expected: float
-    scale: float  # what a difference is divided by
-    bound: float  # of the divided difference
+    scale: float  # the divisor of a difference
+    bound: float  # the largest divided difference that passes
     positive: bool = False  # whether it must be above 0 as well
 
     @property
     def difference(self) -> float:
-        """How far the circuit is from what is expected, as part of ``scale``."""
+        """The distance of the circuit from the expected value, as part of ``scale``."""
         return abs(self.circuit - self.expected) / self.scale
 
     @property
@@ -43,7 +43,7 @@ class Reading:
         return self.difference <= self.bound and (self.circuit > 0 or not self.positive)
 
     def shortcoming(self) -> str:
-        """What keeps it from passing."""
+        """The reason why it doesn't pass."""
         above = f", and above 0, not {self.circuit:.3g} {self.unit}" if self.positive else ""
         return (
             f"{self.scene}: {self.quantity} must be within {self.bound:g} of {self.against}, "
@@ -55,10 +55,10 @@ class Reading:
 
 
 def press(pair: Pair) -> list[Reading]:
-    """Bounce-back and residual (m) of what was pressed: an edge by the closed form, a block by float64.
+    """Return bounce-back and residual (m): an edge's compared with the closed form, a block's with float64.
 
-    Each is compared as a part of itself; one that is next to nothing (residual of the viscoelastic, bounce-back of
-    the plastic), as a part of the press.
+    Each difference is relative to the value itself, or to the press where the value is next to nothing (residual of
+    the viscoelastic, bounce-back of the plastic).
     """
     (depth, back), (depth64, back64) = (pair.face.press(pair.scene, run) for run in pair.trajectories)
     against, expected_depth, expected = "float64", depth64, back64
@@ -77,13 +77,13 @@ def press(pair: Pair) -> list[Reading]:
 
 
 def deformation(pair: Pair, run: Trajectory) -> np.ndarray:
-    """(F,) m: how deep the watched face is pressed, or how far it has sunk."""
+    """Return (F,) in m, how deep the watched face is pressed, or how far it has sunk."""
     height = pair.face.height(run)
     return (pair.face.direction if pair.face.pressed else -pair.face.direction) * (height - height[0])
 
 
 def bulges(scene: Scene, x: np.ndarray) -> np.ndarray:
-    """(4,) m: how far the middles of a block's four upright sides are pushed outwards, from positions (N, 3)."""
+    """Return (4,) in m, how far the middles of a block's upright sides are pushed outwards, from positions (N, 3)."""
     initial, nodes = scene.mesh.points, side_middles(scene)
     outwards = (initial - initial.mean(axis=0))[nodes]
     outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
@@ -91,7 +91,7 @@ def bulges(scene: Scene, x: np.ndarray) -> np.ndarray:
 
 
 def side_middles(scene: Scene) -> np.ndarray:
-    """(4,) the nodes in the middle of a block's sides: lower and upper x, lower and upper y."""
+    """Return (4,), the nodes in the middle of a block's sides: lower and upper x, lower and upper y."""
     points = scene.mesh.points
     low, high = points.min(axis=0), points.max(axis=0)
     wanted = np.tile((low + high) / 2, (4, 1))
@@ -101,7 +101,7 @@ def side_middles(scene: Scene) -> np.ndarray:
 
 
 def bulge(pair: Pair) -> Reading:
-    """The mean bulge of the four sides (m) while the block is held pressed."""
+    """Return the mean bulge of the four sides (m) while the block is held pressed."""
     circuit, float64 = (float(bulges(pair.scene, x[pair.released]).mean()) for x in pair.x)
     return Reading(
         pair.scene.name, "side bulge", "m", circuit, float64, "float64", float64, pair.scene.size, BULGE, positive=True
@@ -109,12 +109,12 @@ def bulge(pair: Pair) -> Reading:
 
 
 def bulge_over_time(pair: Pair, run: Trajectory) -> np.ndarray:
-    """(F,) m: the mean bulge of a block's sides."""
+    """Return (F,) in m, the mean bulge of a block's sides."""
     return np.array([bulges(pair.scene, x).mean() for x in run.x])
 
 
 def fall(pair: Pair) -> Reading:
-    """The height (m) that a block has lost under its own weight in the end."""
+    """Return the height (m) that a block has lost under its own weight in the end."""
     circuit, float64 = (float(deformation(pair, run)[-1]) for run in pair.trajectories)
     return Reading(
         pair.scene.name,
@@ -130,7 +130,7 @@ def fall(pair: Pair) -> Reading:
 
 
 def apart(pair: Pair) -> Reading:
-    """The largest distance between a node in circuit and in float64, in any frame, as part of the object's size."""
+    """Return the largest distance of a node between circuit and float64 in any frame, as part of the object's size."""
     return Reading(
         pair.scene.name,
         "max dx",

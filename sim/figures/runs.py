@@ -1,4 +1,4 @@
-"""What the figures are drawn from: a scene on the circuit, and on float64 beside it."""
+"""The runs that the figures are drawn from: a scene on the circuit, and on float64 beside it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from sim.run import run
 
 SHIPPED = SCENES
 EDGE = "edge-"
-"""Before the name of a shipped scene: a single edge of that scene's first material."""
+"""Prefix to the name of a shipped scene: a single edge of that scene's first material."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class Pair:
 
     @property
     def x(self) -> tuple[np.ndarray, np.ndarray]:
-        """(F, N, dim) m, twice: circuit and float64."""
+        """Positions (F, N, dim) in m of circuit and float64."""
         return self.circuit.trajectory.x, self.float64.trajectory.x
 
     @property
@@ -50,16 +50,16 @@ class Pair:
         return int(self.scene.end_frames[-2])
 
     def frame(self, t: float) -> int:
-        """The frame closest to the time t (s), the last one for any later time."""
+        """Return the frame closest to the time t (s), the last one for any later time."""
         return int(np.abs(self.circuit.trajectory.t - t).argmin())
 
     def difference(self) -> float:
-        """The largest distance between a node of the circuit and of float64 in any frame, by the object's size."""
+        """Return the largest distance of a node between circuit and float64 in any frame, as part of the size."""
         return float(dx_rel(self.scene, self.circuit, self.float64).max())
 
 
 def load(name: str) -> Scene:
-    """The scene of a name: one that ships, or a single edge of its material."""
+    """Return the scene of a name: one that ships, or a single edge of its material."""
     shipped = scenes.load(SHIPPED / f"{name.removeprefix(EDGE)}.toml")
     return single_edge.scene(name, shipped.materials[0]) if name.startswith(EDGE) else shipped
 

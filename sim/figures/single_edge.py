@@ -11,7 +11,7 @@ from golden.physics import stability
 from golden.physics.materials import Material
 from golden.physics.scene import Phase, Scene
 
-LENGTH, DEPTH = 0.1, 0.025  # m, as high as the blocks that ship and pressed as deep
+LENGTH, DEPTH = 0.1, 0.025  # m, height and press of the blocks that ship
 MASS = 5e-3  # kg of its upper end: light enough that nothing swings
 DT = 2.5e-4  # s
 PRESS, HOLD, RELEASE = 40, 400, 2400  # steps
@@ -19,7 +19,7 @@ EVERY = 5  # steps between two frames
 
 
 def scene(name: str, material: Material) -> Scene:
-    """An upright edge on its fixed lower end. Raises `InputError` for a material whose stable dt is below `DT`."""
+    """Return the scene of an upright edge, fixed below. Raises `InputError` if the stable dt is below `DT`."""
     mesh = Mesh(np.array([[0.0, 0.0], [0.0, LENGTH]]), np.empty((0, 3), np.int64), np.array([[0, 1]]))
     foot, head, none = np.array([True, False]), np.array([False, True]), np.zeros(2, bool)
     still, down = np.zeros((2, 2)), np.array([[0.0, 0.0], [0.0, -DEPTH / (PRESS * DT)]])
@@ -38,11 +38,11 @@ def scene(name: str, material: Material) -> Scene:
 
 
 def bounce_back(material: Material) -> float:
-    """m: D q exp(-T / tau), what the edge comes back by after a press in no time and a hold of T.
+    """Return D q exp(-T / tau) in m, the way that the edge comes back after a sudden press and a hold of T.
 
     q = c2 / (c1 + c2) is the share of a quick press that goes into the Voigt part, tau = (c1 + c2) / k the time in
-    which the damper takes it over. A press at constant speed counts half of its own time as hold: what is left of the
-    error is (press / tau)^2 / 24 of the bounce-back. Without a spring nothing comes back.
+    which the damper takes it over. A press at constant speed counts half of its own time as hold: the remaining error
+    is (press / tau)^2 / 24 of the bounce-back. Without a spring nothing comes back.
     """
     if material.k == 0:
         return 0.0

@@ -16,14 +16,14 @@ from sim.figures.runs import Pair
 from sim.report.surface import outline, projected
 from sim.results.comparison import power
 
-SCALE, PLAN_SCALE = 0.0101, 0.0118  # inches per mm of all solid objects, and of what is seen from above
+SCALE, PLAN_SCALE = 0.0101, 0.0118  # inches per mm of all solid objects, and of the views from above
 MARGIN = np.array([7, 3])  # mm around a drawing, for the bulge
-PLAN = (-8, 108)  # mm, of what is seen from above, in both directions
+PLAN = (-8, 108)  # mm, limits of the views from above, in both directions
 ROW, TITLE, BELOW = 1.55, 0.08, 0.3  # inches
 
 
 def draw(pairs: list[Pair]) -> Figure:
-    """A row a material: three states and the middle from above, all in one scale and coloured on one scale."""
+    """Draw a row for each material: three states and the middle from above, with one scale and one colour scale."""
     figure = Figure((paper.WIDTH, ROW * len(pairs) + TITLE + BELOW))
     height = figure.get_figheight()
     x, y = limits(pairs[0].scene)
@@ -53,14 +53,14 @@ def draw(pairs: list[Pair]) -> Figure:
 
 
 def limits(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
-    """x and y (mm, in the picture) between which a block and its bulge are."""
+    """Return limits in x and y (mm, in the picture) around a block and its bulge."""
     corners = projected(outline(scene.mesh)).reshape(-1, 2) * 1e3
     (left, low), (right, high) = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
     return (left, right), (low, high)
 
 
 def plan(axes, pair: Pair) -> None:
-    """The nodes around the block's middle as it is held pressed, from above, with the bulge of its sides."""
+    """Draw the nodes around the block's middle as it is held pressed, from above, with the bulge of its sides."""
     nodes = ring(pair.scene)
     circuit, float64 = (x[pair.released, nodes, :2] * 1e3 for x in pair.x)
     axes.fill(
@@ -87,7 +87,7 @@ def plan(axes, pair: Pair) -> None:
 
 
 def ring(scene: Scene) -> np.ndarray:
-    """The nodes on the sides of a block at half of its height, in order around it."""
+    """Return the nodes on the sides of a block at half of its height, in order around it."""
     points = scene.mesh.points
     centre = (points.min(axis=0) + points.max(axis=0)) / 2
     away = points - centre
@@ -98,7 +98,7 @@ def ring(scene: Scene) -> np.ndarray:
 
 
 def film(pairs: list[Pair]) -> Film:
-    """The blocks side by side, and how far their sides bulge over time."""
+    """Make the film: the blocks side by side, and how far their sides bulge over time."""
     figure = Figure((7.2, 4.0))
     x, y = limits(pairs[0].scene)
     bodies, dots = [], []
@@ -117,5 +117,5 @@ def film(pairs: list[Pair]) -> Film:
 
 
 def bulge(pair: Pair) -> Callable[[Trajectory], np.ndarray]:
-    """What gives (F,) mm of a run: the mean bulge of the sides."""
+    """Return a function from a run to (F,) in mm, the mean bulge of the sides."""
     return lambda run: reading.bulge_over_time(pair, run) * 1e3

@@ -1,4 +1,4 @@
-"""What was read from the figures, on the terminal."""
+"""The readings of the figures, on the terminal."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ HEAD = "scene", "quantity", "circuit", "expected", "against", "difference", "all
 
 
 def print_readings(entries: dict[str, dict]) -> None:
-    """One line a number, on stdout, and each once: lengths in mm, differences as part of the number or of the size."""
+    """Print one line for each reading, each once: lengths in mm, differences as part of the number or of the size."""
     rows = [HEAD]
     for read in (read for entry in entries.values() for read in entry["readings"]):
-        shown = (
+        values = (
             f"{round(1e3 * read[key], 4) + 0:.4f} mm" if read["unit"] == "m" else power(read[key])
             for key in ("circuit", "expected")
         )
@@ -19,7 +19,7 @@ def print_readings(entries: dict[str, dict]) -> None:
             (
                 read["scene"],
                 read["quantity"],
-                *shown,
+                *values,
                 read["against"],
                 power(read["difference"]),
                 power(read["bound"]),

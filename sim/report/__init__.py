@@ -1,4 +1,5 @@
-"""The page of a comparison: every scene to be looked at, with its differences and numbers, in one file."""
+"""The page of a comparison: every scene with its pictures, differences and figures, in one file. The commands and
+`sim.figures` import it; it imports results, support and golden."""
 
 from sim.report.page import DATA, Section, of_runs, section, write
 

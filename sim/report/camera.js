@@ -1,4 +1,4 @@
-// From metres to the canvas: flat objects as they are, solids without perspective from any side.
+// Projects metres to the canvas: flat objects as they are, solids without perspective from any side.
 
 class Camera {
   constructor(recording) {
@@ -38,7 +38,7 @@ class Camera {
     this.centre = [width / 2, (height - below) / 2];
   }
 
-  // (points * 3) x and y on the canvas, and how near the reader it is, in pixels.
+  // Returns (points * 3): x and y on the canvas and the height towards the reader, in pixels.
   project(points) {
     const dim = this.dim3 ? 3 : 2, count = points.length / dim, result = new Float64Array(3 * count);
     const { scale, middle, right, up, view, centre } = this;

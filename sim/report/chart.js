@@ -1,4 +1,4 @@
-// Curves over time, with a line where the picture is: press or drag to go elsewhere.
+// Curves over time with a line at the frame in the picture; press or drag to move it.
 
 const SVG = "http://www.w3.org/2000/svg";
 const FRAME = { left: 52, right: 18, top: 18, bottom: 34, height: 240 };
@@ -11,7 +11,7 @@ function drawn(parent, name, attributes, text) {
   return element;
 }
 
-// Round numbers between two others, about so many.
+// Returns about so many round numbers between two others.
 function ticks(low, high, about) {
   const raw = (high - low) / about, decade = 10 ** Math.floor(Math.log10(raw));
   const step = decade * [1, 2, 5, 10].find((digit) => digit * decade >= raw * 0.999);
@@ -20,7 +20,7 @@ function ticks(low, high, about) {
   return result;
 }
 
-// `series`: {name, values, kind}, kind being a class of the page's style; `lines`: {value, text, kind} across.
+// `series`: {name, values, kind}, where kind is a class of the page's style; `lines`: {value, text, kind}, horizontal.
 class Chart {
   constructor(figure, { t, phases, series, unit, log, lines, seek }) {
     Object.assign(this, { figure, t, phases, series, unit, log, lines: lines || [] });
@@ -47,7 +47,7 @@ class Chart {
     return Math.max(0, Math.min(1, part)) * this.t[this.t.length - 1];
   }
 
-  // Whether a value has a place on the axis.
+  // True if the axis can show a value.
   there(value) {
     return value !== null && (!this.log || value > 0);
   }
@@ -55,7 +55,7 @@ class Chart {
   limits() {
     const known = this.series.flatMap(({ values }) => values.filter((value) => this.there(value)));
     const all = [...known, ...this.lines.map(({ value }) => value)];
-    if (this.log) { // nothing is of interest far below the lowest line
+    if (this.log) { // values far below the lowest line are of no interest
       const lowest = Math.max(Math.min(...all), Math.min(...this.lines.map(({ value }) => value)) / 5);
       return [Math.floor(Math.log10(lowest)), Math.ceil(Math.log10(Math.max(...all) * 2))];
     }
@@ -115,7 +115,7 @@ class Chart {
     return result;
   }
 
-  // A frame of the run, which may be one that isn't drawn.
+  // Moves to a frame of the run, which may be one that isn't drawn.
   at(frame) {
     this.now = frame;
     if (!this.cursor) return;

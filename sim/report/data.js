@@ -1,11 +1,11 @@
-// What a scene's script element holds, unpacked as it is asked for.
+// The data of a scene's script element, unpacked on demand.
 
 function unpacked(text, kind) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   return kind === Uint8Array ? bytes : new kind(bytes.buffer);
 }
 
-// A quantity with its unit's prefix: 0.0123 N is 12.3 mN. The prefix may be chosen for another, larger value.
+// Writes a quantity with a prefix to its unit: 0.0123 N is 12.3 mN. The prefix may be chosen for a larger value.
 const PREFIXES = [["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12]];
 function prefixFor(largest) {
   return PREFIXES.find(([, factor]) => Math.abs(largest) >= factor) || ["", 1];
@@ -19,7 +19,7 @@ function si(value, unit, largest = value) {
   return `${number(Math.abs(scaled) < 1e-9 ? 0 : Number(scaled.toPrecision(3)))}\u00a0${prefix}${unit}`;
 }
 
-// The next smaller one of 1, 2, 5, 10, 20 ...
+// Returns the next smaller one of 1, 2, 5, 10, 20 ...
 function roundBelow(value) {
   const decade = 10 ** Math.floor(Math.log10(value));
   return decade * [5, 2, 1].find((digit) => digit * decade <= value);
@@ -41,7 +41,7 @@ class Recording {
       for (const run of ["float64", "circuit"])
         this.levels[`${what} ${run}`] = unpacked(packed[what][run].data, Uint8Array);
     this.faceEdges = this.edgesOfFaces();
-    // so many times larger a difference may be drawn: the largest is then up to a tenth of the object
+    // factor for drawing differences: the largest becomes up to a tenth of the object
     this.magnified = this.largest_apart ? Math.max(1, roundBelow(this.size / 10 / this.largest_apart)) : 1;
   }
 
@@ -57,7 +57,7 @@ class Recording {
     return result;
   }
 
-  // (nodes * dim) m: of float64, and `times` the circuit's differences on top.
+  // Returns (nodes * dim) in m: float64's positions plus `times` the circuit's differences.
   positions(frame, times) {
     const length = this.nodes * this.dim, start = frame * length, result = new Float64Array(length);
     const { low, step } = this.x;
@@ -68,7 +68,7 @@ class Recording {
     return result;
   }
 
-  // (nodes) m: how far a node of the circuit is from that of float64.
+  // Returns (nodes) in m: the distance of a node between circuit and float64.
   apartOf(frame) {
     const result = new Float64Array(this.nodes), start = frame * this.nodes * this.dim;
     for (let n = 0; n < this.nodes; n++) {
@@ -79,7 +79,7 @@ class Recording {
     return result;
   }
 
-  // (edges) from 0 to 1 on the colour scale.
+  // Returns (edges) from 0 to 1 on the colour scale.
   shades(frame, what, run) {
     const result = new Float64Array(this.edgeCount);
     if (what === "apart") {
@@ -98,7 +98,7 @@ class Recording {
     return found < 0 ? this.phases.length - 1 : found;
   }
 
-  // The frame drawn that is nearest to a time (s).
+  // Returns the drawn frame that is nearest to a time (s).
   nearest(time) {
     let best = 0;
     for (let n = 1; n < this.count; n++) if (Math.abs(this.t[n] - time) < Math.abs(this.t[best] - time)) best = n;

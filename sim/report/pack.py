@@ -1,4 +1,4 @@
-"""What the page draws, in few bytes: whole numbers in base64, beside what they are multiples of."""
+"""The page's data in few bytes: whole numbers in base64, each array with the step that it is a multiple of."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from sim.results.comparison import BOUND, Comparison
 from sim.results.face import watched
 
 BUDGET = 800_000  # bytes of a scene's frames before base64 makes them a third longer
-MOST = 240  # frames
-COLOURED = 0.995  # part of the forces, or of the ratios from each end, that is not beyond the end of its colour scale
+MOST = 240  # frames drawn of a scene
+COLOURED = 0.995  # part of the forces, or of the ratios from each end, that lies within its colour scale
 DIGITS = 6  # of a number in a curve
 
 
 def scene(comparison: Comparison) -> dict:
-    """The object of one scene, for JSON: the mesh, the frames that are drawn and the curves of all frames."""
+    """Return one scene for JSON: the mesh, the drawn frames and the curves of all frames."""
     of = comparison.scene
     mesh, faces = of.mesh, surface(of.mesh)
-    frames = shown(of)
+    frames = frames_to_draw(of)
     float64, circuit = comparison.float64.trajectory, comparison.circuit.trajectory
     apart = (circuit.x - float64.x)[frames]
     force = [energy.edge_forces(of, run)[frames] for run in (float64, circuit)]
@@ -53,8 +53,8 @@ def scene(comparison: Comparison) -> dict:
     }
 
 
-def shown(of: Scene) -> np.ndarray:
-    """The frames that are drawn, all if there is room for them; the ends of the phases in any case."""
+def frames_to_draw(of: Scene) -> np.ndarray:
+    """Return the frames to draw: all of them if there is room, and the ends of the phases in any case."""
     each = 4 * of.mesh.points.size + 4 * len(of.mesh.edges)
     room = max(2 * len(of.phases), min(MOST, BUDGET // each))
     count = len(of.frames)
@@ -63,7 +63,7 @@ def shown(of: Scene) -> np.ndarray:
 
 
 def curves(comparison: Comparison) -> dict:
-    """Numbers over time, SI: a list for all frames each."""
+    """Return the curves in SI units, each a list with a number for every frame."""
     of, face = comparison.scene, watched(comparison.scene)
     float64, circuit = comparison.float64.trajectory, comparison.circuit.trajectory
     return {
@@ -79,7 +79,7 @@ def curves(comparison: Comparison) -> dict:
 
 
 def ratio_limits(ratios: list[np.ndarray]) -> tuple[float, float]:
-    """Ends of a scale of ratios: hundredths around most of them, and no less than a tenth apart."""
+    """Return the ends of a scale of ratios: hundredths around most of them, at least a tenth apart."""
     low, high = np.quantile(np.concatenate([ratio.ravel() for ratio in ratios]), (1 - COLOURED, COLOURED))
     low, high = np.floor(low * 100) / 100, np.ceil(high * 100) / 100
     if high - low < 0.1:
@@ -89,7 +89,7 @@ def ratio_limits(ratios: list[np.ndarray]) -> tuple[float, float]:
 
 
 def quantised(values: np.ndarray, bits: int) -> dict:
-    """(F, N, dim) as unsigned integers over their bounding box: value = low + step * integer, step for step."""
+    """Pack (F, N, dim) as unsigned integers over their bounding box: on each axis value = low + step * integer."""
     low, high = values.min(axis=(0, 1)), values.max(axis=(0, 1))
     step = np.where(high > low, (high - low) / ((1 << bits) - 1), 1.0)
     integers = np.rint((values - low) / step)
@@ -97,13 +97,13 @@ def quantised(values: np.ndarray, bits: int) -> dict:
 
 
 def centred(values: np.ndarray, bits: int) -> dict:
-    """Values around 0 as signed integers: value = step * integer, however small they are."""
+    """Pack values around 0 as signed integers: value = step * integer, however small the values are."""
     step = float(np.abs(values).max()) / ((1 << bits - 1) - 1) or 1.0
     return {"step": step, "data": packed(np.rint(values / step), f"<i{bits // 8}")}
 
 
 def together(arrays: list[np.ndarray], low: float, high: float) -> list[dict]:
-    """Arrays on one scale, for colours: value = low + (high - low) * integer / 255; what is beyond is at its end."""
+    """Pack arrays on one colour scale: value = low + (high - low) * integer / 255; values beyond it are at its ends."""
     width = high - low or 1.0
     return [
         {"low": low, "high": high, "data": packed(np.rint((values.clip(low, high) - low) / width * 255), "u1")}
@@ -116,7 +116,7 @@ def packed(integers: np.ndarray, kind: str) -> str:
 
 
 def rounded(values: np.ndarray) -> list[float | None]:
-    """Numbers for JSON, without digits that nobody reads; what isn't a number is null."""
+    """Return numbers for JSON, rounded to `DIGITS` digits; NaN becomes null."""
     return [float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None for value in values]
 
 

@@ -41,7 +41,7 @@ function begin(section) {
   return viewer;
 }
 
-// The small pictures above, one at a time while nothing else is to be done.
+// Draws the small pictures at the top, one at a time while the browser is idle.
 const cards = [...document.querySelectorAll("nav.cards a")];
 function paintCard(card) {
   const canvas = card.querySelector("canvas"), { width, height } = canvas.getBoundingClientRect();
@@ -49,14 +49,14 @@ function paintCard(card) {
   [canvas.width, canvas.height] = [width * dense, height * dense];
   context.setTransform(dense, 0, 0, dense, 0, 0);
   const recording = recordingOf(document.getElementById(card.hash.slice(1)));
-  const shown = { ...firstShown(recording), plain: true };
-  paint(context, recording, new Camera(recording), shown, scales, theme(width, height, true));
+  const state = { ...initialState(recording), plain: true };
+  paint(context, recording, new Camera(recording), state, scales, theme(width, height, true));
 }
 const idle = window.requestIdleCallback || ((work) => setTimeout(work, 1));
 function paintCards(rest) {
   if (rest.length) idle(() => (paintCard(rest[0]), paintCards(rest.slice(1))));
 }
-// after the scenes that can be seen
+// after the visible scenes
 requestAnimationFrame(() => requestAnimationFrame(() => paintCards(cards)));
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => paintCards(cards));
 

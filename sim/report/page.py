@@ -1,4 +1,4 @@
-"""index.html and compare.json from what was compared: the page is one file that needs no other."""
+"""Write index.html and compare.json from comparisons; the page is one file that needs no other."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class Section:
     entry: dict  # its object in compare.json
     description: str
     facts: list[str]
-    looked: int  # frames whose ranges were looked at
-    drawn: dict  # what the page draws, as sim.report.pack.scene
+    looked: int  # frames whose ranges were measured
+    drawn: dict  # the page's data, from sim.report.pack.scene
 
     @classmethod
     def of(cls, comparison: Comparison) -> Section:
@@ -58,7 +58,7 @@ def of_runs(scene: Scene, progress=None, *, folders: dict[str, dict[str, Path]])
 
 
 def write(sections: list[Section], folder: Path) -> None:
-    """Write the page and the figures that it shows."""
+    """Write the page, and the figures that it shows as compare.json."""
     entries = [section.entry for section in sections]
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER),
@@ -89,30 +89,30 @@ def write(sections: list[Section], folder: Path) -> None:
 
 
 def colours() -> dict[str, list[str]]:
-    """Each quantity's scale, as colours from its lowest to its highest value."""
+    """Return each quantity's scale as colours from its lowest to its highest value."""
     return {name: [to_hex(scale(n / (SAMPLES - 1))) for n in range(SAMPLES)] for name, scale in style.scales().items()}
 
 
 def inlined(value) -> str:
-    """JSON that may stand in a script of a page."""
+    """Return JSON that is safe inside a page's script element."""
     return json.dumps(value, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def facts(scene: Scene) -> list[str]:
-    """What the scene is, in phrases."""
+    """Return phrases that describe the scene."""
     extent = " × ".join(f"{side * 1e3:.3g}" for side in scene.mesh.points.max(axis=0) - scene.mesh.points.min(axis=0))
     phases = ", ".join(f"{phase.name} {phase.steps * scene.dt:.3g} s" for phase in scene.phases)
     return [f"{extent} mm", phases, f"step {scene.dt * 1e3:.3g} ms"]
 
 
 def least(ranges: list[dict]) -> dict:
-    """The quantity with the least headroom, of those that have a unit: the others are bounded by what they are."""
+    """Return the quantity with the least headroom among those with a unit; the others are bounded by definition."""
     free = [entry for entry in ranges if entry["unit"] and entry["headroom_bits"] is not None]
     return min(free, key=lambda entry: entry["headroom_bits"])
 
 
 def slug(name: str) -> str:
-    """The name as part of an address."""
+    """Return the name as part of an address."""
     return re.sub(r"\W+", "-", name).strip("-").lower() or "scene"
 
 
@@ -121,7 +121,7 @@ def percent(part: float) -> str:
 
 
 def si(value: float, unit: str) -> str:
-    """A quantity with its unit's prefix: 0.0123 N is 12.3 mN. A number has none."""
+    """Return a quantity with a prefix to its unit: 0.0123 N is 12.3 mN. A pure number gets no prefix."""
     if not unit:
         return f"{float(f'{value:.3g}'):g}"
     for prefix, factor in (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12)):
@@ -131,7 +131,7 @@ def si(value: float, unit: str) -> str:
 
 
 def brief(value) -> str:
-    """A figure as it is read: yes or no, whole numbers in full, others with two digits."""
+    """Return a figure for reading: yes or no, whole numbers in full, others with two digits."""
     if value is None:
         return "–"
     if isinstance(value, bool):

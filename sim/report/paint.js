@@ -1,4 +1,4 @@
-// One picture of an object on a canvas.
+// Paints an object on a canvas.
 
 class Scale {
   constructor(colours) {
@@ -10,7 +10,7 @@ class Scale {
     });
   }
 
-  // Darker by `light`, after `part` of it was replaced by white.
+  // Returns a colour of which `part` is replaced by white, then darkened by `light`.
   rgb(shade, light = 1, part = 0) {
     const mixed = this.table[Math.max(0, Math.min(255, Math.round(shade * 255)))]
       .map((channel) => Math.round(light * (channel + part * (255 - channel))));
@@ -18,26 +18,26 @@ class Scale {
   }
 }
 
-const PALE = 0.5; // of an edge's colour on the faces beside it
+const PALE = 0.5; // part of an edge's colour on the faces beside it
 
-// `shown`: frame, run ("circuit", "float64" or "both"), colour ("ratio", "force" or "apart"), times, inside, plain.
-function paint(context, recording, camera, shown, scales, theme) {
+// `state`: frame, run ("circuit", "float64" or "both"), colour ("ratio", "force" or "apart"), times, inside, plain.
+function paint(context, recording, camera, state, scales, theme) {
   const { width, height } = theme;
   context.clearRect(0, 0, width, height);
   camera.fit(theme);
-  const float64 = camera.project(recording.positions(shown.frame, 0));
-  const circuit = shown.run === "float64" ? float64
-    : camera.project(recording.positions(shown.frame, shown.times));
-  const both = shown.run === "both", points = both ? float64 : circuit;
+  const float64 = camera.project(recording.positions(state.frame, 0));
+  const circuit = state.run === "float64" ? float64
+    : camera.project(recording.positions(state.frame, state.times));
+  const both = state.run === "both", points = both ? float64 : circuit;
   context.lineJoin = context.lineCap = "round";
 
-  if (!shown.plain) paintOutline(context, recording, camera, theme);
-  const shades = recording.shades(shown.frame, shown.colour, shown.run === "float64" ? "float64" : "circuit");
-  const scale = scales[shown.colour];
-  if (shown.inside) paintEdges(context, recording, points, circuit, both, shades, scale, theme);
-  else paintFaces(context, recording, points, circuit, both, shades, scale, theme, shown.colour === "apart" ? 0 : PALE);
-  if (shown.plain) return;
-  paintHeld(context, recording, shown, points, theme);
+  if (!state.plain) paintOutline(context, recording, camera, theme);
+  const shades = recording.shades(state.frame, state.colour, state.run === "float64" ? "float64" : "circuit");
+  const scale = scales[state.colour];
+  if (state.inside) paintEdges(context, recording, points, circuit, both, shades, scale, theme);
+  else paintFaces(context, recording, points, circuit, both, shades, scale, theme, state.colour === "apart" ? 0 : PALE);
+  if (state.plain) return;
+  paintHeld(context, recording, state, points, theme);
   paintRuler(context, camera, theme);
 }
 
@@ -59,14 +59,14 @@ function paintFaces(context, recording, points, circuit, both, shades, scale, th
     const u = [points[b] - points[a], points[b + 1] - points[a + 1], points[b + 2] - points[a + 2]];
     const v = [points[c] - points[a], points[c + 1] - points[a + 1], points[c + 2] - points[a + 2]];
     const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    if (recording.dim3 && normal[2] >= 0) continue; // looks away: y points down on a canvas
+    if (recording.dim3 && normal[2] >= 0) continue; // faces away: y points down on a canvas
     const length = Math.hypot(...normal) || 1;
     const lit = Math.max(0, (0.25 * normal[0] + 0.75 * normal[1] - 0.61 * normal[2]) / length);
     order.push([points[a + 2] + points[b + 2] + points[c + 2], f, recording.dim3 ? 0.8 + 0.2 * lit : 1]);
   }
   order.sort((one, other) => one[0] - other[0]);
   const sides = [0, 1, 2];
-  // of both runs the second lies upon the first; a solid's faces hide what is behind them, of both
+  // the second run is painted over the first; a solid's faces hide what is behind them in both
   const passes = !both ? ["fill own"] : recording.dim3 ? ["fill float64 circuit"] : ["fill", "float64", "circuit"];
   for (const pass of passes)
     for (const [, f, light] of order) {
@@ -120,9 +120,9 @@ function paintOutline(context, recording, camera, theme) {
   context.setLineDash([]);
 }
 
-// Squares on nodes that are fixed in this phase, discs on those that are driven; a solid's only in front.
-function paintHeld(context, recording, shown, points, theme) {
-  const held = recording.held[recording.phase(shown.frame)], front = new Set();
+// Paints squares on the nodes fixed in this phase and discs on driven ones; of a solid, only the nodes in front.
+function paintHeld(context, recording, state, points, theme) {
+  const held = recording.held[recording.phase(state.frame)], front = new Set();
   if (recording.dim3)
     for (let f = 0; f < recording.faces.length; f += 3) {
       const [a, b, c] = [3 * recording.faces[f], 3 * recording.faces[f + 1], 3 * recording.faces[f + 2]];
@@ -132,7 +132,7 @@ function paintHeld(context, recording, shown, points, theme) {
     }
   for (const [nodes, colour, square] of [[held.fixed, theme.ink, true], [held.driven, theme.bound, false]])
     for (const node of nodes) {
-      if (recording.dim3 && !shown.inside && !front.has(node)) continue;
+      if (recording.dim3 && !state.inside && !front.has(node)) continue;
       const [x, y] = [points[3 * node], points[3 * node + 1]];
       context.beginPath();
       if (square) context.rect(x - 3.5, y - 3.5, 7, 7);

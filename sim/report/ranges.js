@@ -1,4 +1,4 @@
-// How many numbers took how many bits, beside the bits that there are.
+// Histograms of the bits that numbers took, beside the bits of their format.
 
 const COLUMNS = 38, CELL = 8, HIGH = 24, ZERO = 16;
 

@@ -1,4 +1,4 @@
-"""Colours and lines that all pictures share. The colours are Okabe and Ito's, told apart by colour-blind readers."""
+"""Colours and lines that all pictures share. The colours are Okabe and Ito's, for colour-blind readers too."""
 
 from matplotlib import colormaps
 from matplotlib.colors import LinearSegmentedColormap, to_rgb
@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 FLOAT, CIRCUIT, BOUND, QUIET = "#e69f00", "#0072b2", "#d55e00", "#666666"
 FLOAT_MESH, FLOAT_FILL = "#ffc94d", to_rgb("#fff3d6")
-WIDE, THIN = 4.0, 1.4  # points: float64 and the circuit upon it
+WIDE, THIN = 4.0, 1.4  # points: float64, and the circuit on top of it
 FLOAT_LINE = {"color": FLOAT_MESH, "linewidth": 5.5, "solid_capstyle": "round"}
 CIRCUIT_LINE = {"color": CIRCUIT, "linewidth": 1.5}
 OUTLINE = {"color": "#222222", "linewidth": 1.0, "linestyle": (0, (5, 4))}
@@ -15,8 +15,8 @@ WIDTH = 12.0  # inches, of every picture
 
 
 def scales() -> dict[str, object]:
-    """Colour maps by what is shown: ratios and differences get lighter as they grow, to colour-blind readers too;
-    forces go from pulling (blue) over none to pushing (vermilion)."""
+    """Return the colour map of each quantity: ratios and differences get lighter as they grow, for colour-blind readers
+    too; forces go from pulling (blue) over none to pushing (vermilion)."""
     force = LinearSegmentedColormap.from_list("force", [CIRCUIT, "#7fbde0", "#dcdcdc", "#f0a868", BOUND])
     return {"ratio": colormaps["viridis"], "force": force, "apart": colormaps["cividis"]}
 
@@ -26,7 +26,7 @@ def figure(height: float) -> Figure:
 
 
 def panels(columns: int, tall: float):
-    """A figure and its axes side by side, each `tall` times as high as wide (at most 1.5 times), with room for a
+    """Return a figure with axes side by side, each ``tall`` times as high as wide (at most 1.5 times), with room for a
     title, numbers below and a legend."""
     left, right, above, below, gap = 0.45, 0.1, 0.4, 0.95, 0.3  # inches
     width = (WIDTH - left - right - gap * (columns - 1)) / columns
@@ -58,14 +58,14 @@ def legend() -> list[Line2D]:
 
 
 def quiet(axes) -> None:
-    """A plot over a light grid."""
+    """Style a plot: a light grid below the curves."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(color="#e6e6e6", linewidth=0.7)
     axes.set_axisbelow(True)
 
 
 def bare(axes, scale: bool, left: bool) -> None:
-    """A drawing: no frame, and numbers beside it only where lengths can be read off."""
+    """Style a drawing: no frame, and numbers beside it only where lengths can be read."""
     axes.spines[:].set_visible(False)
     if scale:
         axes.set_xlabel("mm")

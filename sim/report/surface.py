@@ -1,4 +1,4 @@
-"""What a reader sees of a mesh: all triangles of a flat one; of a solid one, the surface that looks this way."""
+"""The visible part of a mesh: all triangles of a flat one; of a solid one, the surface that faces the reader."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ LIGHT = np.array([0.2, -0.6, 0.77])  # of length 1, from the front and above
 
 
 def projected(x: np.ndarray) -> np.ndarray:
-    """(..., 2) right and up in the picture, from (..., 2) or (..., 3): solids without perspective."""
+    """Project (..., 2) or (..., 3) to (..., 2), right and up in the picture: solids without perspective."""
     return x if x.shape[-1] == 2 else np.stack([x @ RIGHT, x @ UP], axis=-1)
 
 
 def surface(mesh: Mesh) -> np.ndarray:
-    """(S, 3) the triangles, or those that belong to a single tetrahedron, counter-clockwise seen from outside."""
+    """Return (S, 3), the triangles of a flat mesh or the faces of a single tetrahedron each, counter-clockwise from
+    outside."""
     if mesh.dim == 2:
         return mesh.cells
     faces = np.concatenate([mesh.cells[:, face] for face in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))])
@@ -27,7 +28,7 @@ def surface(mesh: Mesh) -> np.ndarray:
 
 
 def visible(x: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(V, 3) the faces that look at the reader, from behind to the front, and (V,) how much light they get."""
+    """Return (V, 3), the faces towards the reader from back to front, and (V,), how much light they get."""
     if x.shape[1] == 2:
         return faces, np.ones(len(faces))
     a, b, c = (x[faces[:, corner]] for corner in range(3))
@@ -39,7 +40,7 @@ def visible(x: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def outline(mesh: Mesh) -> np.ndarray:
-    """(B, 2, dim) the border of a flat mesh; of a solid, the bounding box's edges that a reader sees."""
+    """Return (B, 2, dim), the border of a flat mesh; of a solid, the visible edges of its bounding box."""
     if mesh.dim == 2:
         sides = np.sort(np.concatenate([mesh.cells[:, pair] for pair in ((0, 1), (1, 2), (0, 2))]), axis=1)
         return mesh.points[sides[once(sides)]]
@@ -51,6 +52,6 @@ def outline(mesh: Mesh) -> np.ndarray:
 
 
 def once(rows: np.ndarray) -> np.ndarray:
-    """Indices of the rows that occur a single time."""
+    """Return the indices of the rows that occur once."""
     _, first, count = np.unique(rows, axis=0, return_index=True, return_counts=True)
     return first[count == 1]

@@ -1,10 +1,10 @@
-// The picture of one scene with its controls. Whoever wants to know which frame is shown gets it by `onframe`.
+// The picture of one scene with its controls; calls the functions in `onframe` with each new frame.
 
 const SLOWER = [1, 2, 5, 10, 20, 50, 100];
 const TURN = Math.PI / 24;
 
-// The object deformed: at the end of its first phase, in the middle of a single one.
-function firstShown(recording) {
+// Returns the first state: the deformed object, at the end of its first phase or in the middle of a single one.
+function initialState(recording) {
   const steady = recording.ratio.circuit.high - recording.ratio.circuit.low <= 0.1001;
   return { frame: recording.nearest(recording.phases[0].end * (recording.phases.length > 1 ? 1 : 0.5)),
            run: "circuit", colour: steady ? "force" : "ratio", times: 1, inside: false };
@@ -18,7 +18,7 @@ class Viewer {
     this.canvas = section.querySelector("canvas");
     this.camera = new Camera(recording);
     this.onframe = [];
-    this.shown = firstShown(recording);
+    this.state = initialState(recording);
     this.playing = false;
     this.connect();
     new ResizeObserver(() => this.paint()).observe(this.canvas);
@@ -31,7 +31,7 @@ class Viewer {
   }
 
   connect() {
-    const { recording, shown } = this;
+    const { recording, state } = this;
     this.play = this.control("play");
     this.slider = this.control("frame");
     this.slider.max = recording.count - 1;
@@ -39,14 +39,14 @@ class Viewer {
     this.slider.addEventListener("input", () => (this.pause(), this.show({ frame: Number(this.slider.value) })));
     for (const name of ["run", "colour"])
       for (const input of this.section.querySelectorAll(`input[data-role="${name}"]`)) {
-        input.checked = input.value === shown[name];
+        input.checked = input.value === state[name];
         input.addEventListener("change", () => this.show({ [name]: input.value }));
       }
     const inside = this.control("inside"), times = this.control("times"), speed = this.control("speed");
     inside.addEventListener("change", () => this.show({ inside: inside.checked }));
     times.addEventListener("change", () => this.show({ times: times.checked ? recording.magnified : 1 }));
     this.control("magnified").textContent = recording.magnified.toLocaleString("en").replaceAll(",", "\u202f");
-    const wanted = 6 / recording.t[recording.count - 1]; // s to see it all
+    const wanted = 6 / recording.t[recording.count - 1]; // s for the whole run
     this.slower = SLOWER.reduce((best, one) =>
       Math.abs(Math.log(one / wanted)) < Math.abs(Math.log(best / wanted)) ? one : best);
     for (const one of SLOWER) speed.add(new Option(one === 1 ? "in real time" : `${one} times slower`, one));
@@ -75,7 +75,7 @@ class Viewer {
 
   key(event) {
     const turns = { ArrowLeft: [-TURN, 0], ArrowRight: [TURN, 0], ArrowUp: [0, TURN], ArrowDown: [0, -TURN] };
-    const { frame } = this.shown, last = this.recording.count - 1;
+    const { frame } = this.state, last = this.recording.count - 1;
     const frames = { Home: 0, End: last, ",": Math.max(0, frame - 1), ".": Math.min(last, frame + 1) };
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     if (event.key === " ") this.toggle();
@@ -92,18 +92,18 @@ class Viewer {
   toggle() {
     if (this.playing) return this.pause();
     const { recording } = this;
-    if (this.shown.frame === recording.count - 1) this.show({ frame: 0 });
+    if (this.state.frame === recording.count - 1) this.show({ frame: 0 });
     this.playing = true;
     this.play.textContent = "Pause";
     let began = null;
-    const from = recording.t[this.shown.frame];
+    const from = recording.t[this.state.frame];
     const tick = (now) => {
       if (!this.playing) return;
       began ??= now;
       const time = from + (now - began) / 1000 / this.slower;
-      let { frame } = this.shown;
+      let { frame } = this.state;
       while (frame < recording.count - 1 && recording.t[frame + 1] <= time) frame++;
-      if (frame !== this.shown.frame) this.show({ frame });
+      if (frame !== this.state.frame) this.show({ frame });
       if (frame === recording.count - 1) this.pause();
       else requestAnimationFrame(tick);
     };
@@ -116,9 +116,9 @@ class Viewer {
   }
 
   show(change) {
-    const { recording, shown } = this;
-    Object.assign(shown, change);
-    const { frame } = shown, phase = recording.phases[recording.phase(frame)].name;
+    const { recording, state } = this;
+    Object.assign(state, change);
+    const { frame } = state, phase = recording.phases[recording.phase(frame)].name;
     this.slider.value = frame;
     this.section.dataset.frame = frame;
     const time = `${si(recording.t[frame], "s", recording.t[recording.count - 1])}`;
@@ -136,11 +136,11 @@ class Viewer {
       [canvas.width, canvas.height] = [Math.round(width * dense), Math.round(height * dense)];
     const context = canvas.getContext("2d");
     context.setTransform(dense, 0, 0, dense, 0, 0);
-    paint(context, this.recording, this.camera, this.shown, this.scales, theme(width, height));
+    paint(context, this.recording, this.camera, this.state, this.scales, theme(width, height));
   }
 
   legend() {
-    const { recording, shown } = this, both = shown.run === "both";
+    const { recording, state } = this, both = state.run === "both";
     this.control("scale").hidden = both;
     this.control("lines").hidden = !both;
     this.control("colours").disabled = both;
@@ -153,8 +153,8 @@ class Viewer {
               si(-full, "N"), "0", si(full, "N")],
       apart: [`distance of circuit and float64; ${si(apart, "m")} are ${power(apart / recording.size)} of the size`,
               "0", si(apart / 2, "m", apart), si(apart, "m")],
-    }[shown.colour];
-    this.control("bar").style.background = `linear-gradient(to right, ${this.scales[shown.colour].colours.join(", ")})`;
+    }[state.colour];
+    this.control("bar").style.background = `linear-gradient(to right, ${this.scales[state.colour].colours.join(", ")})`;
     ["title", "low", "middle", "high"].forEach((role, n) => { this.control(role).textContent = named[n]; });
   }
 }
@@ -163,7 +163,7 @@ function power(x) {
   return x === 0 ? "0" : x.toExponential(1).replace(".0e", "e").replace("e+", "e");
 }
 
-// What a picture of this size takes from the page's style.
+// Returns what a picture of this size takes from the page's style.
 function theme(width, height, plain = false) {
   const style = getComputedStyle(document.documentElement), result = { width, height, plain };
   for (const name of ["ink", "quiet", "under", "line", "wide", "circuit", "bound"])

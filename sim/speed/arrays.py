@@ -1,4 +1,4 @@
-"""A scene as the arrays that `sim.speed.kernel` works on."""
+"""The arrays that `sim.speed.kernel` works on, from a scene."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ RATIO, BASE, TOTAL, RHO_K, RHO_K_L, RHO_C1, SLIP, LOW, HIGH = range(9)
 rho = c2 / (c1 + c2), rho k, rho k L and rho c1, which give the pull; 1 / c2; a_min and a_max."""
 
 LINE = 64
-"""Bytes of a cache line. One that two threads write to goes to and fro between their cores, at 0.1 us a time."""
+"""Bytes of a cache line. A line that two threads write to bounces between their cores, 0.1 us each time."""
 
 TOGETHER = 16
-"""Edges or nodes that one thread works on: as many numbers fill a cache line, or two."""
+"""Granularity of a thread's share, in edges or nodes: so many numbers fill one cache line, or two."""
 
 
 class Arrays(NamedTuple):
     """N nodes, E edges in ascending order (i, then j), in one floating-point type; indices are unsigned.
 
-    Rows of numbers are longer than that, so that every one begins with a cache line.
+    Rows of numbers are padded, so that each begins with a cache line.
     """
 
     i: np.ndarray  # (E,)
@@ -40,13 +40,13 @@ class Arrays(NamedTuple):
     force: np.ndarray  # (dim, N) sum of the edges' pulls
     mobility: np.ndarray  # (N,) 1 / mass, 0 of held nodes
     drift: np.ndarray  # (dim, N) acceleration by gravity and loads
-    time: np.ndarray  # (3,) from the step's begin to the next stage
-    weight: np.ndarray  # (4,) what a stage's rates count for
+    time: np.ndarray  # (3,) from the start of the step to the next stage
+    weight: np.ndarray  # (4,) weights of the stages' rates
     axes: tuple[int, ...]  # its length is the number of dimensions
 
 
 def arrays(scene: Scene, dtype) -> Arrays:
-    """The scene at rest. Raises `InputError` for dampers that depend on the force."""
+    """Return the scene at rest. Raises `InputError` for dampers that depend on the force."""
     if scene.force_dependent:
         raise InputError(
             "materials must have linear dampers for the compiled float model, not ones that depend on the force"
@@ -101,7 +101,7 @@ def arrays(scene: Scene, dtype) -> Arrays:
 
 
 def rows(values, dtype) -> np.ndarray:
-    """A copy of (r, n) values whose rows begin with a cache line each; what is left of a row's last one is 0."""
+    """Copy (r, n) values into rows that each begin with a cache line, padded with 0."""
     count, width = np.shape(values)
     width = -(-width // TOGETHER) * TOGETHER
     size = count * width * np.dtype(dtype).itemsize
@@ -124,7 +124,7 @@ def begin(arrays: Arrays, scene: Scene, phase: Phase) -> None:
 
 
 def shares(count: int, threads: int) -> np.ndarray:
-    """(threads + 1,) bounds of the edges or nodes, of so many, that each thread works on."""
+    """Return (threads + 1,), the bounds of the shares of ``count`` edges or nodes."""
     bounds = np.arange(threads + 1) * count // (threads * TOGETHER) * TOGETHER
     bounds[-1] = count
     return bounds.astype(np.uint64)

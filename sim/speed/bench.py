@@ -1,4 +1,4 @@
-"""What the benchmark finds out: an entry for every mesh and circuit, in build/bench.json."""
+"""The benchmark's results: an entry for every mesh and circuit, in build/bench.json."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CIRCUITS = (1, 1), (2, 1), (4, 1), (4, 2), (6, 2)
 """(lanes, updates): edge processors, and nodes updated in a cycle."""
 
 BOARD = "ulx3s-85f"
-"""Whose clock the circuit has, if no other is asked for: that of its timing result."""
+"""The board whose timing result gives the circuit's clock, if no other is asked for."""
 
 
 def bench(
@@ -30,14 +30,14 @@ def bench(
     circuits: Iterable[tuple[int, int]] = CIRCUITS,
     clock: float,
 ) -> list[dict]:
-    """Entries of meshes, by their names as in `sim.speed.meshes`: every circuit for each.
+    """Return the entries of meshes, by their names in `sim.speed.meshes`, for every circuit.
 
     Parameters
     ----------
     cycles_per_step
         Clock cycles of a step of (scene, lanes, updates).
     software
-        Step times of programs as `sim.speed.timing.software` gives them; called once for a mesh.
+        Step times of programs, in the form of `sim.speed.timing.software`; called once for each mesh.
     clock
         MHz.
     """
@@ -52,7 +52,7 @@ def bench(
 
 
 def entry(scene: Scene, lanes: int, updates: int, cycles: int, clock: float, software: dict[str, dict]) -> dict:
-    """A mesh's object in bench.json for one circuit; a program's ``ratio`` is its step over the circuit's."""
+    """Return a mesh's object in bench.json for one circuit; a program's ``ratio`` is its step over the circuit's."""
     evaluations, step = RK4.stages * len(scene.mesh.edges), cycles / clock
     return {
         "mesh": scene.name,
@@ -70,7 +70,7 @@ def entry(scene: Scene, lanes: int, updates: int, cycles: int, clock: float, sof
 
 
 def claim(path: Path) -> Path:
-    """Make the folder of the file to write, before anything is timed for it. Raises `InputError` if it can't be."""
+    """Make the folder of the file to write, before anything is timed. Raises `InputError` if it can't be written."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         reason = os.strerror(errno.EISDIR) if path.is_dir() else None

@@ -19,14 +19,14 @@ class CompiledModel:
     Parameters
     ----------
     dtype
-        Type of all its numbers.
+        The type of all its numbers.
     threads
-        How many work on a step; each of them keeps a core busy.
+        The number of threads that share a step; each keeps a core busy.
 
     Raises
     ------
     InputError
-        If a damper depends on the force, or there are not as many threads as 1.
+        If a damper depends on the force, or ``threads`` is below 1.
     """
 
     def __init__(self, scene: Scene, dtype=np.float32, threads: int = 1):
@@ -43,7 +43,7 @@ class CompiledModel:
         arrays.begin(self._arrays, self._scene, phase)
 
     def step(self, steps: int = 1) -> np.ndarray:
-        """Run so many steps and give the time that each of them took (steps,), in ns."""
+        """Run so many steps and return (steps,) in ns, the time that each of them took."""
         counter, stamps = arrays.rows([[0]], np.int64)[0], np.zeros((steps + 1, 2), np.int64)
 
         cores = sorted(os.sched_getaffinity(0))
@@ -53,7 +53,7 @@ class CompiledModel:
                 os.sched_setaffinity(0, {cores[thread % len(cores)]})
             run(self._arrays, *self._shares, thread, self._threads, counter, steps, stamps)
 
-        # daemons: when an interrupt ends the program, they may be waiting for this thread
+        # daemons, because they may wait for this thread when an interrupt ends the program
         others = [Thread(target=part, args=(thread,), daemon=True) for thread in range(1, self._threads)]
         for other in others:
             other.start()
@@ -67,15 +67,15 @@ class CompiledModel:
 
     @property
     def x(self) -> np.ndarray:
-        """(N, dim) m."""
+        """Positions (N, dim) in m."""
         return self._arrays.node[: self._scene.dim, : len(self._scene.mass)].T
 
     @property
     def v(self) -> np.ndarray:
-        """(N, dim) m/s."""
+        """Velocities (N, dim) in m/s."""
         return self._arrays.node[self._scene.dim :, : len(self._scene.mass)].T
 
     @property
     def a(self) -> np.ndarray:
-        """(E,)"""
+        """Ratios (E,)."""
         return self._arrays.edge[arrays.RATIO, : len(self._arrays.i)]

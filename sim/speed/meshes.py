@@ -15,7 +15,7 @@ MESHES = "9x9", "23x23", "5x5x5", "6x6x6", "8x8x8", "4x4x32"
 """Nodes along each axis."""
 
 LAP = 10_000
-"""Steps of a scene. The dough flows a little all the time: no number fades away or gets too small for float32."""
+"""Steps of a scene. The dough always flows a little, so that no number becomes too small for float32."""
 
 DT = 2.5e-4  # s
 PULL = 0.1  # m^2/s^2: acceleration along the last axis, times the length that hangs
@@ -26,7 +26,7 @@ CELLS = {  # dimensions -> m between nodes, kg/m^2 or kg/m^3, material
 
 
 def scene(name: str) -> Scene:
-    """The block with so many nodes along each axis: ``9x9`` of triangles, ``5x5x5`` of five tetrahedra a cell.
+    """Return the block with so many nodes along each axis: ``9x9`` of triangles, ``5x5x5`` of five tetrahedra a cell.
 
     Raises `InputError` for another kind of name.
     """

@@ -1,4 +1,4 @@
-"""What the benchmark shows on the terminal: what it is doing, and in the end two tables."""
+"""The benchmark on the terminal: its progress, and two tables in the end."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from pathlib import Path
 
 from sim.speed.timing import SOFTWARE
 
-IDLE = 0.95  # of the time a program must have run, or its figures say little about it
+IDLE = 0.95  # part of the time that a program must have run for its figures to be meaningful
 SHORT = {"numpy": "NumPy", "numba_1_thread": "Numba-1", "numba_all_threads": "Numba-all"}
 
 
 @contextmanager
 def progress():
-    """Gives ``shown(text)``, a line on stderr that the next one replaces; silent where stderr is not a terminal.
+    """Give ``report_progress(text)``: it writes a line on stderr that replaces the one before, if stderr is a terminal.
 
-    Nothing moves by itself: a bar that is drawn while a step is timed would take the core that the step needs.
+    Nothing moves by itself: a bar drawn while a step is timed would take the core that the step needs.
     """
     if not sys.stderr.isatty():
         yield lambda text: None
@@ -28,7 +28,7 @@ def progress():
 
 
 def print_tables(entries: list[dict]) -> None:
-    """The circuits' steps and how many times as long the programs' take, then the programs' own times."""
+    """Print the circuits' steps and how many times longer the programs take, then the programs' own times."""
     software = entries[0]["software"]
     print(
         "One step evaluates every edge 4 times, as Runge-Kutta wants it. Circuit with P lanes and M node updates a "
@@ -91,7 +91,7 @@ def print_tables(entries: list[dict]) -> None:
 
 
 def disturbed(entries: list[dict]) -> list[str]:
-    """Programs that did not have the cores to themselves, with the part of the time that they had."""
+    """Return the programs that did not have the cores to themselves, with the part of the time that they had."""
     least = {name: min(e["software"][name]["running"] for e in entries) for name in entries[0]["software"]}
     return [f"{SHORT[name]} had {part:.0%} of its cores" for name, part in least.items() if part < IDLE]
 
@@ -103,7 +103,7 @@ def _print(rows: list[list[str]]) -> None:
 
 
 def processor() -> str:
-    """What the machine calls its processor."""
+    """Return the processor's name."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

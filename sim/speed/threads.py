@@ -1,11 +1,11 @@
-"""What the compiled step needs of the machine: a barrier between threads, and the clock."""
+"""A barrier between threads and a clock, for compiled code."""
 
 import ctypes
 
 from numba import njit, types
 from numba.extending import intrinsic
 
-PATIENCE = 2000  # looks at the barrier before the core is offered to another thread: seldom, unless cores are few
+SPINS = 2000  # reads of the barrier before the core is offered to another thread; rarely reached unless cores are few
 MONOTONIC = 1  # CLOCK_MONOTONIC of Linux, which `time.perf_counter_ns` reads too
 
 _libc = ctypes.CDLL(None)
@@ -27,7 +27,7 @@ def _add(typing, counter, value):
 
 @intrinsic
 def _load(typing, counter):
-    """What counter[0] is now."""
+    """Read counter[0]."""
 
     def generate(context, builder, signature, arguments):
         array = context.make_array(signature.args[0])(context, builder, arguments[0])
@@ -38,25 +38,25 @@ def _load(typing, counter):
 
 @njit(nogil=True)
 def meet(counter, threads, meetings):
-    """Wait until all threads are here. Give and take the number of meetings so far, 0 at first, as counter[0]."""
+    """Wait until all threads are here. Takes and returns the number of meetings so far, 0 at first like counter[0]."""
     if threads > 1:
         _add(counter, 1)
         looks = 0
         while _load(counter) < (meetings + 1) * threads:
             looks += 1
-            if looks > PATIENCE:
+            if looks > SPINS:
                 _sched_yield()
     return meetings + 1
 
 
 @njit(nogil=True)
 def stamp(now):
-    """Put the time into ``now``: seconds, nanoseconds."""
+    """Write the time to ``now``: seconds, nanoseconds."""
     _clock_gettime(MONOTONIC, now.ctypes)
 
 
 @njit(nogil=True)
 def idle(stamps):
-    """Nothing but stamps, one after the other: what a stamp costs."""
+    """Take stamps and do nothing else, to measure what a stamp costs."""
     for n in range(len(stamps)):
         stamp(stamps[n])

@@ -1,4 +1,4 @@
-"""Step times of the software on this machine, every step by itself."""
+"""Step times of the software on this machine, each step timed by itself."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ SOFTWARE = {
     "numba_1_thread": "compiled by Numba in float32, one thread",
     "numba_all_threads": "compiled by Numba in float32, one thread a core",
 }
-"""What is timed, and its name for people."""
+"""The timed programs, and their description."""
 
-WARM = 200  # steps before the timed ones: code compiled, caches filled, the clock of the cores up
+WARM = 200  # steps before the timed ones: to compile, to fill caches, and to raise the cores' clock
 
 
 def software(scene: Scene, steps: int = LAP, progress: Callable[[str], object] | None = None) -> dict[str, dict]:
-    """Step times of the golden model (float64) and of the compiled one (float32).
+    """Return the step times of the golden model (float64) and of the compiled one (float32).
 
     The object is put back at its start every `LAP` steps.
 
@@ -38,7 +38,7 @@ def software(scene: Scene, steps: int = LAP, progress: Callable[[str], object] |
     -------
     dict
         For each name of `SOFTWARE`: ``threads``, ``steps``, and in us ``step_us`` (median), ``p999_us`` (99.9th
-        percentile), ``max_us``, ``clock_us`` (what looking at the clock takes of each, median); ``running``, the
+        percentile), ``max_us``, ``clock_us`` (the part of it that reading the clock takes, median); ``running``, the
         part of the time in which its threads had a core each: less than 1 when others use the machine.
     """
     threads = {"numpy": 1, "numba_1_thread": 1, "numba_all_threads": cores()}
@@ -73,7 +73,7 @@ def _numpy(scene: Scene):
 
 
 def _timed(call: Callable[[], object], times: int) -> np.ndarray:
-    """(times,) ns of each call."""
+    """Return (times,) in ns, the time of each call."""
     taken = np.empty(times, np.int64)
     for n in range(times):
         began = perf_counter_ns()
