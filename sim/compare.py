@@ -50,5 +50,5 @@ def complete(
             result = run(scene, backend, lanes=lanes, updates=updates, progress=report_progress(backend))
             runs = runs | {backend: result}
     raw = next(runs[backend].raw for backend in integer_backends() if backend in runs)
-    seen = ranges.of_run(scene, raw, report_progress(RANGES))
+    seen = ranges.measure(scene, raw, report_progress(RANGES))
     return Comparison(scene, runs, seen, taken + perf_counter() - began)

@@ -85,6 +85,6 @@ def test_energies_ranges_and_archive(tmp_path):
     object_ = scene()
     result = run(object_, "fixed")
     assert all(np.isfinite(part).all() for part in energy.energies(object_, result.trajectory).values())
-    assert {entry["quantity"] for entry in ranges.of_run(object_, result.raw)} >= {"rho", "sigma"}
+    assert {entry["quantity"] for entry in ranges.measure(object_, result.raw)} >= {"rho", "sigma"}
     archive.save(object_, tmp_path / "scene.npz")
     assert archive.load(tmp_path / "scene.npz").materials == object_.materials

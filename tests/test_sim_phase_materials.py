@@ -134,7 +134,7 @@ def test_forces_and_ranges_are_those_of_the_materials_of_the_time():
         np.add.at(total, j, push)
         held = reaction != 0
         assert np.allclose(total[held], -reaction[held], atol=1e-9 * np.abs(reaction).max()), frame
-    seen = {entry["quantity"]: entry["largest"] for entry in ranges.of_run(scene, run(scene, "fixed").raw)}
+    seen = {entry["quantity"]: entry["largest"] for entry in ranges.measure(scene, run(scene, "fixed").raw)}
     assert seen["ratio_next"] == 1.0  # the viscoelastic ratio: the other one's stays below
 
 

@@ -98,7 +98,7 @@ def test_entry(circuit, material):
     assert entry["max_dx_rel"] == pytest.approx(largest / scene.size, rel=1e-12)
     assert entry["final_dx_rel"] == result.dx_rel()[-1] <= entry["max_dx_rel"]
     assert entry["energy"] == {name: values[-1] for name, values in result.energy.items()}
-    assert entry["ranges"] == ranges.of_run(scene, result.circuit.raw)
+    assert entry["ranges"] == ranges.measure(scene, result.circuit.raw)
     assert entry["max_da"] == max(np.abs(result.circuit.trajectory.a - result.float64.trajectory.a).ravel())
     assert shortcomings(entry) == []
 

@@ -1,4 +1,4 @@
-"""sim.results.ranges: what the quantities of the datapath take of their formats, seen without changing a bit."""
+"""sim.results.ranges: the ranges of the datapath's quantities, measured without changing a bit."""
 
 import json
 from dataclasses import replace
@@ -21,7 +21,7 @@ PRESENT = {"along", "rho_middle", "sigma_middle"}
 
 @pytest.fixture(scope="module")
 def watched_by_hand():
-    """(scene, its run, what a machine saw that went through the whole run)"""
+    """Return (scene, its run, the ranges seen by a machine that went through the whole run)."""
     scene = block("rheological-force", steps=(10, 5, 10), every=1)
     seen, names = ranges.Ranges(), {}
 
@@ -50,7 +50,7 @@ def test_watching_changes_no_bit(watched_by_hand):
 def test_steps_from_the_frames_are_those_of_the_run(watched_by_hand):
     scene, result, entries, _, _ = watched_by_hand
     told = []
-    assert ranges.of_run(scene, result.raw, told.append) == entries
+    assert ranges.measure(scene, result.raw, told.append) == entries
     assert told == list(range(1, 26))
     json.dumps(entries, allow_nan=False)
 

@@ -12,7 +12,7 @@ from hw.boards import board as boards
 from hw.parameters import Parameters
 from hw.sizes import SIZES
 from sim.encode import limits
-from sim.results import step_time as steptime
+from sim.results import step_time
 from sim.results.cycles import Wavefront
 from sim.results.result import Result
 
@@ -46,18 +46,18 @@ TIMING = {
 def test_occupancy_is_the_edges_of_all_stages_by_lanes_and_cycles():
     scene = block(steps=(10, 5, 10))
     result = Result("rtl", None, 1.0, cycles=2500, lanes=2, updates=1)
-    assert steptime.of_run(scene, result) == {"cycles_per_step": 100.0, "occupancy": 4 * 23 / 200}
-    assert steptime.of_run(scene, Result("fixed", None, 1.0)) == {"cycles_per_step": None, "occupancy": None}
+    assert step_time.count(scene, result) == {"cycles_per_step": 100.0, "occupancy": 4 * 23 / 200}
+    assert step_time.count(scene, Result("fixed", None, 1.0)) == {"cycles_per_step": None, "occupancy": None}
 
 
 def test_boards_without_a_timing_result_are_not_timed(tmp_path):
-    assert steptime.on_boards(block(), tmp_path) == [{"board": name, "timed": False} for name in boards.timed()]
+    assert step_time.on_boards(block(), tmp_path) == [{"board": name, "timed": False} for name in boards.timed()]
 
 
 def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING))
     scene = block(dim=3)
-    found = next(board for board in steptime.on_boards(scene, tmp_path) if board["timed"])
+    found = next(board for board in step_time.on_boards(scene, tmp_path) if board["timed"])
     parameters = Parameters(**{name: TIMING[name] for name in SIZES if name in TIMING})
     cycles = Wavefront(limits.encode(scene).image, parameters).per_step()
     assert cycles >= RK4.stages * len(scene.mesh.edges) / 2
@@ -78,7 +78,7 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
 def test_a_board_that_updates_one_axis_at_a_time_takes_longer(tmp_path):
     def timed(axes):
         (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"axes": axes, "lanes": 4}))
-        return next(board for board in steptime.on_boards(block(), tmp_path) if board["timed"])
+        return next(board for board in step_time.on_boards(block(), tmp_path) if board["timed"])
 
     whole, in_turn = timed(3), timed(1)
     assert (whole["axes"], in_turn["axes"]) == (3, 1)
@@ -87,15 +87,15 @@ def test_a_board_that_updates_one_axis_at_a_time_takes_longer(tmp_path):
 
 def test_the_clock_of_a_board_is_that_of_its_result(tmp_path):
     (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING))
-    assert steptime.clock("ulx3s-85f", tmp_path) == 90.0
+    assert step_time.clock("ulx3s-85f", tmp_path) == 90.0
     with pytest.raises(
         InputError,
         match=re.escape("--clock must be given, as ulx3s-25f has not been timed (make timing BOARD=ulx3s-25f)"),
     ):
-        steptime.clock("ulx3s-25f", tmp_path)
+        step_time.clock("ulx3s-25f", tmp_path)
 
 
 def test_an_object_that_is_too_large_does_not_fit(tmp_path):
     (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"nodes": 8}))
-    found = next(board for board in steptime.on_boards(block(), tmp_path) if board["timed"])
+    found = next(board for board in step_time.on_boards(block(), tmp_path) if board["timed"])
     assert found["fits"] is False and "step_us" not in found

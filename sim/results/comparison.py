@@ -22,7 +22,7 @@ BOUND = {False: 1e-5, True: 5e-5}
 class Comparison:
     """Runs of one scene by backend: on float64, and on at least one that computes in the circuit's integers.
 
-    ``ranges`` is what `sim.results.ranges.of_run` gives, ``seconds`` the time of all runs.
+    ``ranges`` is what `sim.results.ranges.measure` gives, ``seconds`` the time of all runs.
     """
 
     scene: Scene
@@ -70,7 +70,7 @@ class Comparison:
             "lanes": circuit.lanes,
             "updates": circuit.updates,
             "cycles": circuit.cycles,
-            **step_time.of_run(scene, circuit),
+            **step_time.count(scene, circuit),
             "boards": step_time.on_boards(scene),
             "rtl_equals_fixed": all(other.raw.same(first.raw) for other in others) if others else None,
             "max_dx_rel": float(dx.max()),

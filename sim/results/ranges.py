@@ -1,4 +1,4 @@
-"""How much of its format each quantity of the datapath uses in a run, and how much is left."""
+"""The range of each quantity of the datapath in a run: how much of its format it uses, and its headroom."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from sim.results.result import Raw
 MEASURED = {name for name, quantity in QUANTITIES.items() if quantity.measured}
 
 SAMPLES = 100
-"""Steps of a run that are looked at, unless it has fewer frames or more phases."""
+"""Number of steps of a run that are sampled, unless it has fewer frames or more phases."""
 
 
 class Ranges:
-    """A histogram, for each quantity, of how many bits its numbers take: something to `watch` a `Machine` with.
+    """A histogram of the bits that each quantity's numbers take: the ``watch`` of a `golden.datapath.machine.Machine`.
 
     Attributes
     ----------
     counts : dict of str to (bits + 1,) int64
-        How many numbers took 0, 1, 2 ... bits, sign excluded: what takes n is from 2**(n - 1) up to 2**n.
+        How many numbers took 0, 1, 2 ... bits, sign excluded: a number of n bits is from 2**(n - 1) up to 2**n.
     largest : dict of str to int
         Largest magnitude, as an integer.
     formats : dict of str to Q
@@ -46,7 +46,7 @@ class Ranges:
             self.largest[name] = max(self.largest.get(name, 0), int(magnitude.max()))
 
     def entries(self, units: Units) -> list[dict]:
-        """Plain numbers for the JSON, a quantity each, in their order."""
+        """Return an entry of compare.json for each quantity, in their order."""
         return [self._entry(name, units) for name in QUANTITIES if name in self.counts]
 
     def _entry(self, name: str, units: Units) -> dict:
@@ -68,7 +68,7 @@ class Ranges:
 
 
 def in_si(unit: str, units: Units) -> tuple[float, str]:
-    """A format's unit in SI. The trial forces of several materials have no common one: then it is the full scale."""
+    """Return a format's unit in SI. Trial forces of several materials have no common one: then it is the full scale."""
     trial = (units.trial[0], "N") if len(set(units.trial)) == 1 else (1.0, "full scale")
     return {
         "size": (units.size, "m"),
@@ -81,15 +81,14 @@ def in_si(unit: str, units: Units) -> tuple[float, str]:
 
 
 def sampled(scene: Scene) -> np.ndarray:
-    """Frames from which a step is looked at: evenly spread, and those at which a phase starts."""
+    """Return the frames from which a step is sampled: evenly spread, and those at which a phase starts."""
     frames = np.linspace(0, len(scene.frames) - 2, min(SAMPLES, len(scene.frames) - 1)).round().astype(int)
     starts = np.cumsum([0] + [phase.steps for phase in scene.phases[:-1]])
     return np.union1d(frames, np.searchsorted(scene.frames, starts))
 
 
-def of_run(scene: Scene, raw: Raw, progress: Callable[[int], object] | None = None) -> list[dict]:
-    """The ranges in one step behind each frame of `sampled`, from the state that a run had there: a quantity each,
-    with plain numbers.
+def measure(scene: Scene, raw: Raw, progress: Callable[[int], object] | None = None) -> list[dict]:
+    """Return an entry for each quantity: its ranges in the step after each frame of `sampled`, from the run's state.
 
     ``progress`` is called with the step that was reached.
     """
@@ -109,7 +108,7 @@ def of_run(scene: Scene, raw: Raw, progress: Callable[[int], object] | None = No
 
 
 def _with_phase(scene: Scene) -> Iterator[tuple]:
-    """(frame, the phase that goes on or starts there)"""
+    """Yield each sampled frame with the phase that goes on or starts there."""
     ends = np.cumsum([phase.steps for phase in scene.phases])
     for frame in sampled(scene):
         yield frame, scene.phases[np.searchsorted(ends, scene.frames[frame], side="right")]

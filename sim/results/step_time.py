@@ -9,7 +9,7 @@ from sim.encode import limits
 from sim.results.result import Result
 
 
-def of_run(scene: Scene, result: Result) -> dict:
+def count(scene: Scene, result: Result) -> dict:
     """Return ``cycles_per_step`` and ``occupancy`` (edges issued per lane and cycle) of a circuit's run; else None."""
     if result.cycles is None:
         return {"cycles_per_step": None, "occupancy": None}
