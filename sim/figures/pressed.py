@@ -69,7 +69,7 @@ def film(pairs: list[Pair]) -> Film:
         for axes, quantity in ((way, curves.deformation(pair)), (force, pair.face.force))
     ]
     for axes in (way, force):
-        curves.time_axis(axes, curves.SHOWN)
+        curves.time_axis(axes, curves.WAY)
     offset = pair.circuit.trajectory.t[pair.released]
 
     def show(t: float) -> None:
