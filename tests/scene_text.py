@@ -1,4 +1,9 @@
-"""The text of a small scene, for tests that change a line of it."""
+"""Text of a small scene, for tests that change a line of it."""
+
+import pytest
+
+from golden.scene.load import load
+from golden.support.errors import InputError
 
 SCENE = """\
 name = "block"
@@ -55,3 +60,12 @@ def written(folder, text=SCENE):
 def changed(text, old, new):
     assert text.count(old) >= 1, old
     return text.replace(old, new, 1)
+
+
+def refusal(path):
+    """Return the message with which `golden.scene.load.load` refuses a file, without the file's name."""
+    with pytest.raises(InputError) as caught:
+        load(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}: ") and "\n" not in message
+    return message.removeprefix(f"{path}: ")
