@@ -1,4 +1,4 @@
-"""Small objects and what is done to them, for the tests of the float64 model."""
+"""Small objects and phases for the tests of the float64 model."""
 
 import numpy as np
 
@@ -8,12 +8,12 @@ from golden.physics.scene import Phase, Scene
 
 
 def line(length=1.0) -> Mesh:
-    """One edge along x."""
+    """Return one edge along x."""
     return Mesh(np.array([[0.0, 0.0], [length, 0.0]]), np.empty((0, 3), dtype=int), np.array([[0, 1]]))
 
 
 def phase(mesh, steps, fixed=(), driven=None, load=None, name="phase") -> Phase:
-    """`fixed`: node indices or a mask; `driven`: (nodes, velocity); `load`: (nodes, force on each)."""
+    """Return a phase; ``fixed``: node indices or a mask, ``driven``: (nodes, velocity), ``load``: (nodes, force)."""
     shape = mesh.points.shape
     hold, drive = np.zeros(shape[0], bool), np.zeros(shape[0], bool)
     velocity, force = np.zeros(shape), np.zeros(shape)
@@ -26,7 +26,7 @@ def phase(mesh, steps, fixed=(), driven=None, load=None, name="phase") -> Phase:
 
 
 def scene(mesh, materials, dt, phases, mass=1.0, gravity=None, edge_material=0, every=None):
-    """`mass`: of the nodes, one or (N,); `every`: steps between two frames, or only the ends of phases."""
+    """Return a scene; ``mass``: each node's or (N,); ``every``: steps between frames, else only the ends of phases."""
     materials = (materials,) if isinstance(materials, Material) else tuple(materials)
     ends = np.cumsum([p.steps for p in phases])
     frames = np.union1d([0, *ends], np.arange(0, ends[-1] + 1, every or ends[-1]))
@@ -46,17 +46,17 @@ def scene(mesh, materials, dt, phases, mass=1.0, gravity=None, edge_material=0, 
 
 
 def bottom(mesh) -> np.ndarray:
-    """Mask of the nodes on the lowest level of the last axis."""
+    """Return the mask of the nodes on the lowest level of the last axis."""
     return mesh.points[:, -1] == mesh.points[:, -1].min()
 
 
 def top(mesh) -> np.ndarray:
-    """Mask of the nodes on the highest level of the last axis."""
+    """Return the mask of the nodes on the highest level of the last axis."""
     return mesh.points[:, -1] == mesh.points[:, -1].max()
 
 
 def press_hold_release(mesh, depth, press, hold, release) -> list[Phase]:
-    """Bottom fixed; the top goes down `depth` (m) in `press = (steps, dt)`, stays `hold` steps, is let go."""
+    """Return three phases on a fixed bottom: the top goes down ``depth`` (m) in (steps, dt), is held, is let go."""
     steps, dt = press
     down = np.zeros(mesh.dim)
     down[-1] = -depth / (steps * dt)

@@ -1,4 +1,4 @@
-"""python -m golden mesh: what it says of a mesh, what it makes, what it refuses."""
+"""``python -m golden mesh``: the figures it prints, the meshes it makes, the mistakes it refuses."""
 
 import errno
 import json
@@ -38,7 +38,7 @@ def refused(arguments, message, capsys):
     assert tuple(capsys.readouterr()) == ("", f"error: {message}\n")
 
 
-def test_the_figures_are_the_meshs(capsys):
+def test_the_figures_agree_with_the_mesh(capsys):
     found = json.loads(said([*RING, "--json"], capsys))
     ring = mesh.filled("ring", outer=0.05, inner=0.03, edge=0.01)
     sides = ring.points[ring.edges[:, 0]] - ring.points[ring.edges[:, 1]]
@@ -62,7 +62,7 @@ def test_the_figures_are_the_meshs(capsys):
     assert list(found["boards"]) == BOARDS and all(board["fits"] for board in found["boards"].values())
 
 
-def test_what_people_read(capsys):
+def test_the_report_as_text(capsys):
     out = said(RING, capsys).splitlines()
     ring = mesh.filled("ring", outer=0.05, inner=0.03, edge=0.01)
     assert out[0] == (f"ring: {len(ring.points)} nodes, {len(ring.edges)} edges, {len(ring.cells)} triangles, one part")
@@ -135,7 +135,7 @@ def test_a_material_that_nothing_limits_says_so():
 
 
 @pytest.mark.parametrize("suffix", ["vtu", "vtk", "msh"])
-def test_what_is_written_is_read_again(suffix, tmp_path, capsys):
+def test_a_written_mesh_is_read_again(suffix, tmp_path, capsys):
     out = tmp_path / f"ring.{suffix}"
     first = said([*RING, "--seed", "4", "--out", str(out)], capsys).splitlines()
     assert said([str(out)], capsys).splitlines()[1:] == first[1:]
@@ -250,7 +250,7 @@ def test_a_file_that_cannot_be_written(tmp_path, capsys, monkeypatch):
     )
 
 
-def test_a_word_on_the_terminal_while_it_takes_long(monkeypatch, capsys):
+def test_a_status_line_is_shown_meanwhile(monkeypatch, capsys):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert main(["mesh", *RING]) == 0
     out, err = capsys.readouterr()

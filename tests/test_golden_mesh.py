@@ -14,7 +14,7 @@ CORNER = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0,
 
 
 def faces(cells):
-    """Each face of the cells with the number of cells that have it."""
+    """Return each face of the cells, and the number of cells that have it."""
     corners = combinations(range(cells.shape[1]), cells.shape[1] - 1)
     found = np.sort(np.concatenate([cells[:, chosen] for chosen in corners]), axis=1)
     return np.unique(found, axis=0, return_counts=True)
@@ -68,7 +68,7 @@ def test_box_of_one_cell(tetrahedra):
         mesh.box((3, 4, 2), (1.0, 1.0, 1.0), 6),
     ],
 )
-def test_edges_are_those_of_the_cells_once_each_in_order(grid):
+def test_every_edge_of_the_cells_occurs_once_in_order(grid):
     pairs = {tuple(sorted(pair)) for cell in grid.cells.tolist() for pair in combinations(cell, 2)}
     assert sorted(pairs) == [tuple(edge) for edge in grid.edges.tolist()]
 
@@ -173,7 +173,7 @@ def test_parts_are_found():
         ),
     ],
 )
-def test_what_cannot_be_an_object_is_refused(build, message):
+def test_invalid_meshes_are_refused(build, message):
     with pytest.raises(InputError) as error:
         build()
     assert str(error.value) == message

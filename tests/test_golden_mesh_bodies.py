@@ -1,4 +1,4 @@
-"""Irregular meshes: the body that was asked for, no bad element, the same for the same seed."""
+"""Irregular meshes: the right body, no bad element, the same mesh for the same seed."""
 
 from math import pi, sin
 
@@ -9,7 +9,7 @@ from golden.mesh import bodies, filling, mesh
 from golden.support.errors import InputError
 
 R, H = 0.05, 0.08
-SIZES = {  # of each kind, and its area or volume
+SIZES = {  # parameters of each kind, and its area or volume
     "disc": ({"radius": R}, pi * R**2),
     "ring": ({"outer": R, "inner": 0.6 * R}, 0.64 * pi * R**2),
     "irregular": ({"radius": R}, None),
@@ -39,13 +39,13 @@ def test_no_element_is_bad_and_the_body_is_whole(name, edge, seed):
         assert found.components()[0] == 1
         assert 0.4 * edge < found.lengths().min() and found.lengths().max() < 2.2 * edge
         assert found.measure().sum() == pytest.approx(hull(found), rel=1e-9)
-        if exact := SIZES[name][1]:  # but for chords in the place of curves
+        if exact := SIZES[name][1]:  # except for chords in place of curves
             assert found.measure().sum() == pytest.approx(exact, rel=2 * edge / R)
 
 
 @pytest.mark.campaign
 def test_five_hundred_meshes(seed):
-    """Nearly every seed gives a mesh, which is good; the few that are refused are of a coarse one."""
+    """Nearly every seed gives a mesh, and all are good; the few refusals are of coarse meshes."""
     refusals, worst = [], {2: 1.0, 3: 1.0}
     for name, edge in CASES:
         for number in range(30):
@@ -61,7 +61,7 @@ def test_five_hundred_meshes(seed):
 
 
 def hull(found):
-    """What the surface encloses, by the divergence theorem: the elements overlap nowhere and leave no holes."""
+    """Return the measure that the surface encloses, by the divergence theorem: no overlaps, no holes."""
     corners = found.cells.shape[1]
     outside = np.concatenate([np.delete(found.cells, n, axis=1) for n in range(corners)])
     inner = found.cells.T.ravel()
@@ -149,14 +149,14 @@ def test_a_seed_gives_one_mesh(name):
         ("ball", {"radius": 0.05, "edge": 0.001}, "edge must be at least 0.0064, for 2000 nodes at most, not 0.001"),
     ],
 )
-def test_what_cannot_be_filled_is_refused(kind, parameters, message):
+def test_bodies_that_cannot_be_filled_are_refused(kind, parameters, message):
     with pytest.raises(InputError) as error:
         mesh.filled(kind, **parameters)
     assert str(error.value) == message
 
 
 def test_a_mesh_with_a_bad_element_is_refused():
-    """So coarse that cells with all of their corners on the surface cannot be good."""
+    """The mesh is so coarse that cells with all corners on the surface cannot be good."""
     message = (
         "edge must leave elements with a radius ratio of at least 0.3, not 0: "
         "choose a smaller one than 0.05, or another seed"

@@ -1,4 +1,4 @@
-"""Mesh files: what is read, in which order, and what is refused."""
+"""Mesh files: formats, order of points and cells, refusals."""
 
 import meshio
 import numpy as np

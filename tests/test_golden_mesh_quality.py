@@ -50,6 +50,6 @@ def test_flat_cells_are_0(cell):
 
 
 def test_slivers_are_found_whose_sides_are_all_long():
-    """Lifting one corner of a square a little: no short edge, no small face, and yet nearly no volume."""
+    """A square with one corner lifted a little: no short edge, no small face, and yet nearly no volume."""
     lifted = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.01]]])
     assert 0 < abs(radius_ratio(lifted)[0]) < 0.02

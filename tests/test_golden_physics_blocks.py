@@ -1,4 +1,4 @@
-"""What the paper shows on whole objects: Figures 1 to 6 and section 6, with numbers."""
+"""The paper's Figures 1 to 6 and section 6 on whole objects, in numbers."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ MATERIALS = {
 
 
 def pressed(grid, material, depth, hold, release, node_mass=2e-3):
-    """Run of a block on fixed ground, pressed by `depth` in 0.05 s, held, let go. Times in s, mass in kg."""
+    """Return the run of a block on fixed ground, pressed by ``depth`` in 0.05 s, held, let go (s, kg)."""
     dt = 2.5e-4
     phases = press_hold_release(grid, depth, (200, dt), round(hold / dt), round(release / dt))
     problem = scene(grid, material, dt, phases, node_mass)
@@ -41,9 +41,9 @@ def test_figure_1_recovery_of_a_block(name):
     # decays at more than 30 / s; during the hold, with the top fixed too, at more than 60 / s
     if name == "viscoelastic":
         assert abs(run.x[-1] - run.x[0]).max() < depth * np.exp(-0.8 * 30)
-    elif name == "plastic":  # what the nodes inside have not come to rest from in the hold
+    elif name == "plastic":  # the inner nodes were not quite at rest when it was let go
         assert abs(run.x[-1] - run.x[-2]).max() < depth * np.exp(-0.2 * 60)
-    else:  # one edge recovers q exp(-(T + t / 2) / tau), and so does the block, but for its edges' turning
+    else:  # one edge recovers q exp(-(T + t / 2) / tau), and so does the block, except that its edges turn
         assert recovered == pytest.approx(0.5 * np.exp(-(0.2 + 0.025) / 0.2), rel=0.1)
 
 
@@ -65,7 +65,7 @@ STRONG = dict(f1=2.0, f2=4.0, c_max=STIFF, c_min=SOFT)
 
 
 def under_gravity(material, dt, time=0.12):
-    """Height lost by a block standing on the ground for `time`, as part of its height."""
+    """Return the part of its height that a block loses standing on the ground for ``time``."""
     grid = GROUND
     phases = press_hold_release(grid, 0.0, (1, dt), 1, round(time / dt))[2:]
     problem = scene(grid, material, dt, phases, NODE, gravity=(0.0, -9.81))

@@ -20,14 +20,14 @@ DIM = 2
 
 
 def irregular(rng, points=14) -> mesh.Mesh:
-    """Delaunay triangles of points moved at random from a grid, so that none are too close to each other."""
+    """Return Delaunay triangles of a grid's points, moved at random but never close to each other."""
     grid = np.stack(np.meshgrid(np.arange(4), np.arange(points // 4 + 1)), axis=-1).reshape(-1, 2)[:points]
     scattered = grid + rng.uniform(-0.3, 0.3, grid.shape)
     return mesh.from_cells(scattered / 4, Delaunay(scattered).simplices)
 
 
 def thrown(rng, materials):
-    """An irregular object of random masses and materials, two nodes fixed; and random velocities."""
+    """Return an irregular object of random masses and materials, two nodes fixed, and random velocities."""
     grid, fixed = irregular(rng), [0, 1]
     mass = rng.uniform(0.1, 0.3, len(grid.points))
     material = rng.integers(len(materials), size=len(grid.edges))
@@ -46,7 +46,7 @@ def run(problem, velocity, time, steps):
 
 
 def c2_of_7(problem, voigt, ldot, c1):
-    """c2 of each edge, (7) at the force f for which (1) and (2) agree, by bisection of |f|."""
+    """Return c2 of each edge: (7) at the force f for which (1) and (2) agree, by bisection of |f|."""
     c_max, c_min = problem.per_edge(lambda m: m.damper.c_max), problem.per_edge(lambda m: m.damper.c_min)
     f1, f2 = problem.per_edge(lambda m: m.damper.f1), problem.per_edge(lambda m: m.damper.f2)
 
@@ -63,7 +63,7 @@ def c2_of_7(problem, voigt, ldot, c1):
 
 
 def reference(problem, velocity, time, method, linear=True, **tolerances):
-    """State at `time` by a solver of SciPy."""
+    """Return the state at ``time`` by a solver of SciPy."""
     points, edges, n = problem.mesh.points, problem.mesh.edges, len(problem.mesh.points)
     k, c1, a0 = map(problem.per_edge, (lambda m: m.k, lambda m: m.c1, lambda m: m.a0))
     natural = a0 * np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)

@@ -1,4 +1,4 @@
-"""Damper laws: equation (7), the share of the trial force that an edge carries, and what a law is restored from."""
+"""Damper laws: equation (7), rho and sigma, and how a law is restored from its parameters."""
 
 from dataclasses import asdict
 from math import inf
@@ -36,7 +36,7 @@ def test_a_linear_law_is_one_coefficient():
 
 
 def bisection(c1, damper, size):
-    """|f| with |f| (1 + c1 / c2(|f|)) = |g|: halves an interval until nothing lies between its ends."""
+    """Return |f| with |f| (1 + c1 / c2(|f|)) = |g|: halve an interval until no float lies inside."""
     low, high = 0.0, size
     while low < (middle := (low + high) / 2) < high:
         low, high = (middle, high) if middle * (1 + c1 / damper.c2(middle)) < size else (low, middle)
@@ -44,7 +44,7 @@ def bisection(c1, damper, size):
 
 
 def random_dampers(rng, n):
-    """Pairs (c1, damper); one in twenty is without c1, one in twenty falls from the force 0 on."""
+    """Yield pairs (c1, damper); one in twenty has no c1, one in twenty falls from the force 0 on."""
     for _ in range(n):
         c1 = 10.0 ** rng.uniform(-3, 4) * (rng.random() > 0.05)
         c_min = 10.0 ** rng.uniform(-2, 2)
@@ -61,7 +61,7 @@ def test_rho_and_sigma_against_bisection(rng):
         f = bisection(c1, damper, size)
         c2 = damper.c2(f)
         branches[1 if damper.f1 < f < damper.f2 else 0 if f <= damper.f1 else 2] += 1
-        # what one unit in the last place of f does to c2, and a dozen roundings
+        # the change of c2 over one unit in the last place of f, and a dozen roundings
         b = np.log(damper.c_max / damper.c_min) / (damper.f2 - damper.f1)
         tolerance = 12 * EPS * (1 + b * damper.f2)
         assert rho == pytest.approx(c2 / (c1 + c2), rel=tolerance)
@@ -80,7 +80,7 @@ def test_outside_the_knees_rho_and_sigma_are_the_constants_exactly(rng):
 
 
 def test_the_middle_branch_goes_on_smoothly_past_both_knees(rng):
-    """The law's formula in place of its constants, up to where c2 is 1e-12 of what it is at f2."""
+    """The formula holds instead of the constants, from f1 / 2 to where c2 is 1e-12 of c_min."""
     tried = 0
     for c1, damper in random_dampers(rng, 200):
         b = np.log(damper.c_max / damper.c_min) / (damper.f2 - damper.f1)
@@ -97,7 +97,7 @@ def test_the_middle_branch_goes_on_smoothly_past_both_knees(rng):
 
 
 def test_far_past_its_knees_a_branch_has_a_root_all_the_same():
-    """A table may have thousands of times g2 behind the branch: Newton's method alone leaves float64 there."""
+    """A table may reach to thousands of times g2, where Newton's method alone would overflow."""
     damper, c1 = Exponential(0.05, 0.06, 1e4, 1.0), 1e-4
     size = 0.06 * np.geomspace(1, 1e4, 200)
     rho, _ = damper.middle_rho_sigma(c1, size)

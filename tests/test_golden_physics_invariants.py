@@ -1,4 +1,4 @@
-"""What holds for every object whatever it is made of: momentum, energy, symmetry, the clamp, rest."""
+"""Invariants of every object, whatever its material: momentum, energy, symmetry, the clamp, rest."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ GRIDS = {"2-D": mesh.rectangle((4, 4), (1.0, 1.0)), "3-D": mesh.box((3, 3, 3), (
 
 
 def free_object(rng, grid, materials=MIXED, dt=1e-3, steps=300):
-    """A free object of random masses and materials, and random velocities."""
+    """Return a free object of random masses and materials, and random velocities."""
     material = rng.integers(len(materials), size=len(grid.edges))
     mass = rng.uniform(0.1, 0.3, len(grid.points))
     problem = scene(grid, materials, dt, [phase(grid, steps)], mass, edge_material=material, every=1)
@@ -66,7 +66,7 @@ def test_the_centre_of_a_free_object_moves_uniformly(rng, dim):
 )
 @pytest.mark.parametrize("dim", GRIDS)
 def test_energy_never_grows(rng, dim, material):
-    """Kinetic energy and that of the springs, k (a l - L)^2 / 2, while no ratio is at its clamp."""
+    """Return kinetic energy plus that of the springs, k (a l - L)^2 / 2, while no ratio is at its clamp."""
     problem, velocity = free_object(rng, GRIDS[dim], [material])
     model = Model(problem)
     model.v = 0.5 * velocity
@@ -88,14 +88,14 @@ def rotation(rng, dim):
 
 
 def moved_object(problem, velocity, turn, shift):
-    """The same object turned and shifted, with the gravity turned."""
+    """Return the same object, rotated and shifted, with rotated gravity."""
     grid = problem.mesh
     grid = mesh.Mesh(grid.points @ turn.T + shift, grid.cells, grid.edges)
     return replace(problem, mesh=grid, gravity=turn @ problem.gravity), velocity @ turn.T
 
 
 @pytest.mark.parametrize("dim", GRIDS)
-def test_turned_and_shifted_objects_do_the_same(rng, dim):
+def test_rotated_and_shifted_objects_do_the_same(rng, dim):
     problem, velocity = free_object(rng, GRIDS[dim])
     problem = replace(problem, gravity=rng.normal(size=problem.dim))
     turn, shift = rotation(rng, problem.dim), 3 * rng.normal(size=problem.dim)
@@ -129,7 +129,7 @@ def test_renumbered_objects_do_the_same(rng, dim):
 
 
 class Watched(Model):
-    """Keeps the ratios that every Runge-Kutta stage is computed with."""
+    """A model that records the ratios of every Runge-Kutta stage."""
 
     def __init__(self, problem):
         super().__init__(problem)

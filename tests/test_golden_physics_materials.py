@@ -1,4 +1,4 @@
-"""The presets: what the design's table says, and what they refuse."""
+"""Presets: the design's table, and the parameters that they refuse."""
 
 import math
 

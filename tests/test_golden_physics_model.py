@@ -1,4 +1,4 @@
-"""Phases, constraints, loads, frames and what `simulate` tells meanwhile."""
+"""Phases, constraints, loads, frames and progress of the float64 model."""
 
 import numpy as np
 import pytest
@@ -97,13 +97,13 @@ def test_materials_belong_to_edges():
     np.testing.assert_allclose(run.x[-1, 1, 0], 1 - 0.09, rtol=1e-9)
 
 
-def test_progress_is_told_now_and_then():
+def test_progress_is_reported_every_so_often():
     told = []
     simulate(scene(line(), GUM, DT, [phase(line(), 450, [0]), phase(line(), 50, [0])]), progress=told.append)
     assert told == [200, 400, 450, 500]
 
 
-def test_a_state_that_is_lost_is_told():
+def test_a_diverging_run_is_an_error():
     """Far above the largest stable step: the run must end with an error, not with NaN in the frames."""
     push = phase(GRID, 5000, bottom(GRID), load=(top(GRID), (0.0, -1.0)), name="push")
     dough = rheological("dough", 1e4, 10.0, 10.0)

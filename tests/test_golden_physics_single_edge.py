@@ -44,7 +44,7 @@ def test_force_and_ratio_satisfy_the_printed_equations(material, rng):
 
 
 def press(material, press_time, hold_time, dt, release_time=0.0, mass=0.02):
-    """Trajectory of an edge whose far end is pressed by DEPTH in `press_time`, held, and let go."""
+    """Return the trajectory of an edge whose far end is pressed by DEPTH in ``press_time``, held, and let go."""
     edge = line(L0)
     steps = [round(time / dt) for time in (press_time, hold_time, release_time)]
     phases = [phase(edge, steps[0], [0], ([1], (-DEPTH / press_time, 0.0))), phase(edge, steps[1], [0, 1])]
@@ -54,7 +54,7 @@ def press(material, press_time, hold_time, dt, release_time=0.0, mass=0.02):
 
 
 def voigt_strain(material, press_time, hold_time):
-    """-(a l - L) after pressing at constant speed and holding: the solution of dq/dt = rho ldot - q / tau."""
+    """Return -(a l - L) after pressing at constant speed and holding: the solution of dq/dt = rho ldot - q / tau."""
     c = material.damper.c_max
     q, tau = c / (material.c1 + c), (material.c1 + c) / material.k
     pressed = DEPTH * q * tau / press_time * (1 - math.exp(-press_time / tau))

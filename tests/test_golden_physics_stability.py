@@ -1,4 +1,4 @@
-"""The largest stable step: against closed forms and the step at which runs blow up; what users are told."""
+"""The largest stable step against closed forms and against runs that blow up, and the error message."""
 
 import re
 from dataclasses import replace
@@ -21,7 +21,7 @@ inf = np.inf
 
 
 def irregular(dim, per_side):
-    """Points moved at random from a grid, meshed by Delaunay; always the same."""
+    """Return a Delaunay mesh of a grid's points moved at random; always the same."""
     grid = np.stack(np.meshgrid(*dim * [np.arange(per_side)]), axis=-1).reshape(-1, dim)
     points = grid + np.random.default_rng(5).uniform(-0.3, 0.3, grid.shape)
     points[:, -1] = np.maximum(points[:, -1], 0)
@@ -33,7 +33,7 @@ def at_rest(grid, material, mass=2e-3, dt=1.0, edge_material=0):
 
 
 def half_and_half(grid):
-    """Edges of the left half: material 0, of the right half: 1."""
+    """Return material 0 for edges of the left half, 1 for those of the right half."""
     return (grid.points[grid.edges, 0].mean(axis=1) > SIDE / 2).astype(int)
 
 
@@ -60,7 +60,7 @@ CASES = {
 
 
 def blows_up(problem, dt, steps=200):
-    """Whether a kick of 1e-9 of the size per step grows ten thousand times (coasting, it grows 200 times)."""
+    """Return True if a kick of 1e-9 of the size per step grows ten thousand times (coasting, it grows 200 times)."""
     model = Model(replace(problem, dt=dt))
     kick = 1e-9 * problem.size / dt * np.random.default_rng(6).normal(size=model.v.shape)
     model.v = np.where(model.held, 0, kick)
@@ -81,7 +81,7 @@ def test_bound_lies_within_a_factor_of_2_below_the_step_that_blows_up(name):
         middle = (low + high) / 2
         low, high = (low, middle) if blows_up(CASES[name], middle * bound) else (middle, high)
     print(f"{name}: blows up at {high:.2f} times the bound of {bound:.3g} s")
-    # the half-disc lies within the region of stability, farthest point 2.96: nothing is given away
+    # the half-disc lies within the stability region, whose farthest point is 2.96: the bound is not too careful
     assert MARGIN * low < 2.96 + 0.05 * MARGIN
 
 
@@ -163,8 +163,8 @@ def test_scaling():
 
 
 @pytest.mark.parametrize("name", ["2-D two materials", "3-D plastic", "2-D viscoelastic, nearly undamped"])
-def test_large_objects_are_judged_like_small_ones(monkeypatch, name):
-    """One eigenvalue by iteration against all of them."""
+def test_iteration_and_full_eigenvalues_agree(monkeypatch, name):
+    """Large objects get one eigenvalue by iteration, small ones all of them."""
     iterated = stability.largest_dt(CASES[name])
     monkeypatch.setattr(stability, "DENSE", 10**6)
     full = stability.largest_dt(CASES[name])
@@ -183,7 +183,7 @@ def test_limiting_material_is_named():
 def test_the_phase_with_the_most_free_nodes_counts():
     pressed, free = phase(SQUARE, 1, bottom(SQUARE) | top(SQUARE)), phase(SQUARE, 1, bottom(SQUARE))
     clay = plastic("clay", 3.0)
-    light = np.where(top(SQUARE), 1e-5, 1e-2)  # only what is held while pressed is light
+    light = np.where(top(SQUARE), 1e-5, 1e-2)  # only the nodes held while pressed are light
     steps = [
         stability.largest_dt(scene(SQUARE, clay, 1.0, phases, light))[0]
         for phases in ([pressed], [free], [pressed, free], [free, pressed])

@@ -1,4 +1,4 @@
-"""Another material in the middle of a deformation: the force stays, and so does what the object can do afterwards."""
+"""Another material in the middle of a deformation: the force does not jump, the ratio keeps its limits."""
 
 import itertools
 
@@ -10,13 +10,13 @@ from golden.physics.switch import switch_material
 
 
 def force(m, length, rate, ratio, natural):
-    """-f of the series law."""
+    """Return -f of the series law."""
     g = m.k * (ratio * length - natural) + m.c1 * rate
     return m.rho_sigma(g)[0] * g
 
 
 def state(rng, m, count=200):
-    """(l, dl/dt, a, L) of edges with forces on all branches of the damper."""
+    """Return (l, dl/dt, a, L) of edges with forces on all branches of the damper."""
     ratio = rng.uniform(m.a_min, m.a_max, count)
     length = rng.uniform(0.01, 0.03, count)
     return length, rng.uniform(-0.1, 0.1, count), ratio, ratio * length * rng.uniform(0.7, 1.3, count)
@@ -50,7 +50,7 @@ def test_a_ratio_at_its_limit_begins_anew():
     assert ratio == new.a0 and natural == pytest.approx(new.a0 * 0.02)  # without a force it is at rest as it is
 
 
-def test_without_a_spring_the_force_is_that_of_the_dampers():
+def test_without_a_spring_the_dampers_give_the_force():
     clay = MATERIALS["plastic"]
     ratio, natural = switch_material(MATERIALS["viscoelastic"], clay, 0.02, 0.1, 1.0, 0.03)
     assert force(clay, 0.02, 0.1, ratio, natural) == pytest.approx(clay.c1 / 2 * 0.1)

@@ -1,4 +1,4 @@
-"""The file a run leaves."""
+"""Trajectory files: saved and loaded, atomic, reproducible."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ RUN = Trajectory(
 ARRAYS = ("t", "x", "v", "a", "reaction", "edges")
 
 
-def test_what_is_saved_is_loaded_bit_for_bit(tmp_path):
+def test_a_saved_trajectory_is_loaded_bit_for_bit(tmp_path):
     RUN.save(tmp_path / "run.npz")
     read = load(tmp_path / "run.npz")
     for name in ARRAYS:
@@ -24,7 +24,7 @@ def test_what_is_saved_is_loaded_bit_for_bit(tmp_path):
         assert getattr(read, name).dtype == getattr(RUN, name).dtype
 
 
-def test_meta_stands_beside_the_arrays(tmp_path):
+def test_meta_is_saved_with_the_arrays(tmp_path):
     RUN.save(tmp_path / "run.npz", backend="float", lanes=4)
     with np.load(tmp_path / "run.npz") as archive:
         assert set(archive) == {*ARRAYS, "backend", "lanes"}

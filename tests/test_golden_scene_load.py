@@ -1,4 +1,4 @@
-"""golden.scene.load: what a scene file means."""
+"""`golden.scene.load`: a scene file and the scene it becomes."""
 
 import numpy as np
 import pytest
@@ -117,7 +117,7 @@ def test_one_material_has_what_the_others_leave(tmp_path):
 
 
 def test_material_by_list_of_nodes(tmp_path):
-    """An element belongs to a list of nodes that has all of its nodes."""
+    """An element belongs to a list of nodes if all of its nodes are listed."""
     left, right = "[0, 1, 3, 4, 6, 7]", "[1, 2, 4, 5, 7, 8]"
     text = changed(
         changed(TWO, "box = { min = [0, 0], max = [0.1, 0.1] }", f"nodes = {left}"),

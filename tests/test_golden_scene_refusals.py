@@ -1,4 +1,4 @@
-"""golden.scene.load: every mistake in one line, with the path of the key, before anything runs.
+"""`golden.scene.load`: every mistake in one line, with the path of the key, before anything runs.
 
 Mistakes in meshes, materials and phases have files of their own.
 """
@@ -71,7 +71,7 @@ def test_dt_above_the_stability_bound(tmp_path):
         ),
     ],
 )
-def test_files_that_are_no_scene(tmp_path, content, message):
+def test_files_that_are_not_scenes(tmp_path, content, message):
     path = tmp_path / "scene.toml"
     if content is not None:
         path.write_bytes(content)
@@ -82,7 +82,7 @@ def test_folder(tmp_path):
     assert refusal(tmp_path) == "the scene must be a readable file: Is a directory"
 
 
-def test_nothing_runs_before_the_checks(tmp_path, monkeypatch):
-    """The bound on dt is the last and dearest check: a mistake anywhere else is found before."""
+def test_the_bound_on_dt_is_checked_last(tmp_path, monkeypatch):
+    """The bound on dt takes longest and is checked last: any other mistake is found first."""
     monkeypatch.setattr(scenes.stability, "check", lambda scene: pytest.fail("too early"))
     assert refusal(written(tmp_path, changed(SCENE, "every = 30", "every = 0")))

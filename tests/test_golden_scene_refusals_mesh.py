@@ -61,7 +61,7 @@ def test_refusals(tmp_path, old, new, message):
 
 
 def part(folder, points, cells):
-    """A scene with a mesh file of its own beside it."""
+    """Write a mesh file, and return the scene's line that names it."""
     import meshio
 
     meshio.write_points_cells(folder / "part.vtk", np.array(points, dtype=float), [("triangle", cells)])
@@ -92,7 +92,7 @@ SQUARE = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
         ),
     ],
 )
-def test_meshes_that_make_no_object(tmp_path, points, cells, message):
+def test_invalid_mesh_files(tmp_path, points, cells, message):
     text = changed(SCENE, MESH, part(tmp_path, points, cells))
     assert refusal(written(tmp_path, text)) == message
 
@@ -116,7 +116,7 @@ TWO_PARTS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 0, 0], [6, 0, 0], [5, 1, 0]]
         ),
     ],
 )
-def test_parts_that_nothing_holds(tmp_path, fixed, message):
+def test_every_part_must_be_held(tmp_path, fixed, message):
     mesh = part(tmp_path, TWO_PARTS, [[0, 1, 2], [3, 4, 5]])
     text = changed(SCENE[: SCENE.index("[[phases]]")], MESH, mesh)
     path = written(tmp_path, f"{text}[[phases]]\nduration = 0.01\nfixed = [{{ nodes = {fixed} }}]\n")

@@ -1,4 +1,4 @@
-"""The shipped scenes show what their first lines say, in numbers, on the float64 model."""
+"""The shipped scenes do on the float64 model what their descriptions say, in numbers."""
 
 from dataclasses import replace
 from functools import cache
@@ -22,7 +22,7 @@ PRESSED = ["viscoelastic", "plastic", "rheological", *FORCE, "viscoelastic-3d", 
 
 @cache
 def run(name):
-    """The scene, its trajectory, and the frame at the end of each phase."""
+    """Return the scene, its trajectory, and the frame at the end of each phase."""
     scene = load(SCENES[name])
     ends = np.cumsum([phase.steps for phase in scene.phases])
     return scene, simulate(scene), np.searchsorted(scene.frames, ends)
@@ -38,7 +38,7 @@ def test_these_scenes_are_shipped():
 
 @each(SCENES)
 def test_cost_and_margin(name):
-    """A scene is dear where a circuit is simulated: few steps, and yet far from the bound on dt."""
+    """Simulating a circuit takes long: scenes have few steps, and dt yet keeps a margin to its bound."""
     scene = load(SCENES[name])
     nodes, fewest, most = {2: (9**2, 1500, 4000), 3: (5**3, 1000, 2000)}[scene.dim]
     assert len(scene.mass) >= nodes
@@ -51,7 +51,7 @@ def test_cost_and_margin(name):
 
 
 def bounce_back(scene, trajectory, ends):
-    """How deep the top is pressed, as part of the height, and which part of that it comes back."""
+    """Return how deep the top is pressed, as part of the height, and the part of that which it recovers."""
     up = scene.dim - 1
     height = scene.mesh.points[:, up].max()
     top = scene.mesh.points[:, up] == height
@@ -137,7 +137,7 @@ def test_gravity():
 
 @each(SCENES)
 def test_no_element_turns_inside_out(name):
-    """Edges know no area: an element pressed flat goes on to the other side, which no picture should show."""
+    """Edges resist no loss of area: an element pressed flat could turn inside out, which no picture should show."""
     scene, trajectory, _ = run(name)
     corners = trajectory.x[:, scene.mesh.cells]
     measure = np.linalg.det(corners[..., 1:, :] - corners[..., :1, :])
@@ -145,7 +145,7 @@ def test_no_element_turns_inside_out(name):
 
 
 def ends_of(name):
-    """Of an irregular object: heights of the face that is pressed at the start and at the end of each phase."""
+    """Return the heights of an irregular object's pressed face, at the start and at the end of each phase."""
     scene, trajectory, ends = run(name)
     return watched(scene).height(trajectory)[[0, *ends]]
 
@@ -162,8 +162,7 @@ def test_irregular_objects_come_to_rest_and_fit(name):
 
 
 def test_ring():
-    """Pressed by a fifth it becomes an oval: wider by nearly as much, its hole flatter than itself; it comes back part
-    of the way."""
+    """Pressed by a fifth, it becomes an oval, wider by nearly as much, with a flatter hole; it recovers in part."""
     scene, trajectory, ends = run("ring")
     start, pressed, _, let_go = ends_of("ring")
     at_rest, oval = scene.mesh.points, trajectory.x[ends[0]]
@@ -192,7 +191,7 @@ def test_ball():
 
 
 def test_bun():
-    """The skin brings it back, the filling makes that slow: without the one it stays, without the other it swings."""
+    """The skin brings it back and the filling slows it: filling alone stays deformed, skin alone is back sooner."""
     scene, trajectory, ends = run("bun")
     start, pressed, _, let_go = ends_of("bun")
     assert (let_go - pressed) / (start - pressed) > 0.9

@@ -1,4 +1,4 @@
-"""Files are there whole or not at all."""
+"""Files are written whole or not at all."""
 
 import pytest
 
@@ -22,7 +22,7 @@ def test_a_file_is_whole_or_not_there(tmp_path):
 
 
 def test_two_may_write_the_same_file_at_a_time(tmp_path):
-    """As the runs of two seeds do: the last one's is left, whole."""
+    """The file of whoever ends last is left, whole."""
     path = tmp_path / "constraints.lpf"
     with atomic_file(path) as file:
         file.write(b"last")
