@@ -203,17 +203,10 @@ def test_faults_are_counted_by_name():
 
 
 def test_from_float_takes_the_nearest_integers_half_up():
-    q = Q(1, 2, name="ratio", unit="1")
-    assert QArray.from_float([-1.0, -0.376, -0.375, -0.125, 0.1, 0.125, 0.75, 0.874], q, None).raw.tolist() == [
-        -4,
-        -2,
-        -1,
-        0,
-        0,
-        1,
-        3,
-        3,
-    ]
+    faults = Counter()
+    numbers = QArray.from_float([-1.0, -0.375, 0.125, 0.874], Q(1, 2), faults)
+    assert numbers.raw.tolist() == [-4, -1, 1, 3] and numbers.raw.dtype == np.int64 and numbers.faults is faults
+    assert numbers.to_float().tolist() == [-1.0, -0.25, 0.25, 0.75]
 
 
 @pytest.mark.parametrize("value", [0.875, -1.126, 3.0])

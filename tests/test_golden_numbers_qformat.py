@@ -4,6 +4,7 @@ import itertools
 import operator
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from small_formats import every_pair, outside, small_formats
 
@@ -92,3 +93,45 @@ def test_the_smallest_format_of_an_integer(raw):
 @pytest.mark.parametrize(("most", "width"), [(1, 1), (7, 3), (8, 4), (19, 5)])
 def test_the_format_of_a_count_holds_the_most(most, width):
     assert count(most) == unsigned(width, 0)
+
+
+QUARTERS = Q(1, 2, name="ratio", unit="size")
+HALF_UP = [(-1.0, -4), (-0.376, -2), (-0.375, -1), (-0.125, 0), (0.1, 0), (0.125, 1), (0.375, 2), (0.625, 3), (0.75, 3)]
+
+
+@pytest.mark.parametrize(("value", "raw"), HALF_UP)
+def test_quantise_takes_the_nearest_integer_half_up(value, raw):
+    assert QUARTERS.quantise(value) == raw and isinstance(QUARTERS.quantise(value), int)
+
+
+def test_quantise_makes_int64_arrays_of_arrays():
+    values, expected = zip(*HALF_UP, strict=True)
+    raw = QUARTERS.quantise(np.reshape(values, (3, 3)))
+    assert raw.dtype == np.int64 and raw.tolist() == np.reshape(expected, (3, 3)).tolist()
+    np.testing.assert_array_equal(QUARTERS.to_float(raw), raw / 4)
+
+
+def test_just_below_a_half_is_rounded_down():
+    """Adding a half to it in float64 would give 1."""
+    assert Q(4, 0).quantise(np.nextafter(0.5, 0)) == 0
+
+
+@pytest.mark.parametrize("value", [0.875, -1.126, 3.0, np.inf, np.nan])
+def test_quantise_refuses_what_does_not_fit_naming_the_quantity(value):
+    with pytest.raises(ValueError, match=rf"^ratio must be within -1 and 0\.75 size, not {value:g}$"):
+        QUARTERS.quantise([0.0, value])
+    with pytest.raises(ValueError, match=rf"^Q1\.2 must be within -1 and 0\.75, not {value:g}$"):
+        Q(1, 2).quantise(value)
+
+
+def test_quantise_may_saturate():
+    assert QUARTERS.quantise([-7.0, 0.875, 0.5, np.inf], saturate=True).tolist() == [-4, 3, 2, 3]
+    with pytest.raises(ValueError, match="ratio must be within"):
+        QUARTERS.quantise([np.nan], saturate=True)
+
+
+@pytest.mark.parametrize("q", [Q(3, 0), unsigned(2, 1), BIT, Q(-1, 4)])
+def test_bits_are_the_integer_they_stand_for(q):
+    for raw in range(q.raw_min, q.raw_max + 1):
+        for above in (0, 1, 5):
+            assert q.from_bits((raw & (1 << q.width) - 1) | above << q.width) == raw

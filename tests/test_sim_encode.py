@@ -1,5 +1,7 @@
 """sim.encode.units, sim.encode.encode and sim.encode.limits: SI numbers survive being encoded and decoded."""
 
+from dataclasses import replace
+
 import golden_objects as objects
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from golden.mesh import mesh
 from golden.physics import materials
 from golden.support.errors import InputError
 from sim.encode import limits
-from sim.encode.coefficients import coefficient
+from sim.encode.coefficients import coefficient, coefficients
 from sim.encode.encode import encode
 from sim.encode.order import order, ranks
 from sim.encode.units import HEADROOM, choose, expected_speed
@@ -122,6 +124,19 @@ def test_a_coefficient_has_all_its_bits(x):
     raw, shift = coefficient(x, FMT)
     assert 2 ** (FMT.mantissa.frac_bits - 1) <= raw <= FMT.mantissa.raw_max
     assert np.ldexp(raw * MANTISSA, -shift) == pytest.approx(x, rel=MANTISSA)
+
+
+@pytest.mark.parametrize("half", [0.5, 2.5, 3.5])
+def test_coefficients_are_rounded_half_up(half):
+    """Python's own rounding takes the even integer."""
+    ratio = (2**33 + half) * FMT.ratio.lsb
+    up = int(2**33 + half + 0.5)
+    scene = mixed()
+    with_ratio = replace(scene.materials[1], a_min=ratio, a_max=ratio, a0=ratio)
+    record = coefficients(with_ratio, 1, encode(scene).units, FMT, 0)[0]
+    assert (record["a_min"], record["a_max"]) == (up, up)
+    encoded = encode(replace(scene, materials=(with_ratio,) * len(scene.materials)))
+    assert set(encoded.image.ratio.tolist()) == {up}
 
 
 def test_a_coefficient_of_zero_is_zero():

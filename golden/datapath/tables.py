@@ -21,10 +21,6 @@ def _lines(curve: Callable, start: np.ndarray, end: np.ndarray):
     return first + (middle - (first + last) / 2) / 2, last - first
 
 
-def _raw(x, q):
-    return np.clip(np.floor(np.ldexp(x, q.frac_bits) + 0.5), q.raw_min, q.raw_max).astype(np.int64)
-
-
 def inverse_table(fmt: Formats) -> dict[str, np.ndarray]:
     """1 / sqrt(q) on [1, 4) by the leading bits of q. Below 1, where no normalised q is, the value of 1."""
     entries = 1 << fmt.inverse_index.width
@@ -35,7 +31,10 @@ def inverse_table(fmt: Formats) -> dict[str, np.ndarray]:
     value, end = value + fmt.inverse.lsb / 2, value + fmt.inverse.lsb / 2 + change
     value = np.minimum(value, 1 - fmt.inverse_value.lsb)
     change = np.where(change, end - value, 0)
-    return {"value": _raw(value, fmt.inverse_value), "slope": _raw(-change, fmt.inverse_slope)}
+    return {
+        "value": fmt.inverse_value.quantise(value, saturate=True),
+        "slope": fmt.inverse_slope.quantise(-change, saturate=True),
+    }
 
 
 @dataclass(frozen=True)
@@ -79,8 +78,8 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
         steepest = np.ldexp(np.abs(change), shift)[:used].max()
         if steepest >= fmt.damper_slope.raw_max * fmt.damper_slope.lsb:
             raise ValueError(f"{name} must change by less than 1/8 of itself in a segment, not {steepest:.2g}")
-        words[f"{name}_value"] = _raw(np.ldexp(value, shift) + fmt.mantissa.lsb / 2, fmt.damper_value)  # it is cut
-        words[f"{name}_slope"] = _raw(np.ldexp(sign * change, shift), fmt.damper_slope)
+        words[f"{name}_value"] = fmt.damper_value.quantise(np.ldexp(value, shift) + fmt.mantissa.lsb / 2, saturate=True)
+        words[f"{name}_slope"] = fmt.damper_slope.quantise(np.ldexp(sign * change, shift), saturate=True)
         words[f"{name}_shift"] = shift.astype(np.int64)
     return DamperTable(int(start * 2**finest), per_octave.bit_length() - 1, words)
 

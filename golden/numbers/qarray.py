@@ -26,15 +26,11 @@ class QArray:
 
     @classmethod
     def from_float(cls, x, fmt: Q, faults: Counter) -> "QArray":
-        """The nearest integers (half up). Raises ValueError if one does not fit."""
-        raw = np.floor(np.ldexp(np.asarray(x, float), fmt.frac_bits) + 0.5)
-        if not np.all((fmt.raw_min <= raw) & (raw <= fmt.raw_max)):
-            low, high, worst = fmt.raw_min * fmt.lsb, fmt.raw_max * fmt.lsb, np.ravel(x)[np.argmax(np.abs(x))]
-            raise ValueError(f"{fmt.name} must be within {low:g} and {high:g} {fmt.unit}, not {worst:g}")
-        return cls(raw.astype(np.int64), fmt, faults)
+        """Return the nearest numbers, as `golden.numbers.qformat.Q.quantise` gives them."""
+        return cls(np.asarray(fmt.quantise(x), np.int64), fmt, faults)
 
     def to_float(self):
-        return np.ldexp(self.raw.astype(float), -self.fmt.frac_bits)
+        return self.fmt.to_float(self.raw)
 
     def _new(self, raw, fmt):
         return QArray(raw, fmt, self.faults)

@@ -1,7 +1,9 @@
-"""Fixed-point formats: the algebra of widths, and nothing else."""
+"""Fixed-point formats: the algebra of widths, and the one conversion from and to float64."""
 
 from dataclasses import dataclass
 from functools import cache, cached_property, reduce
+
+import numpy as np
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,30 @@ class Q:
         """The integer that the lowest `width` bits of ``bits`` stand for; all higher bits are ignored."""
         sign = self.signed << self.width - 1
         return (bits & (1 << self.width) - 1 ^ sign) - sign
+
+    def quantise(self, x, *, saturate: bool = False):
+        """Return the nearest integers to ``x``, in units of `lsb`, rounded half up: an int, or an int64 array.
+
+        Raises
+        ------
+        ValueError
+            If one is out of range, unless it may ``saturate``; if one is not a number.
+        """
+        exact = np.ldexp(np.asarray(x, float), self.frac_bits)
+        floor = np.floor(exact)
+        with np.errstate(invalid="ignore"):  # of infinities
+            raw = floor + (exact - floor >= 0.5)
+        if saturate:
+            raw = np.clip(raw, self.raw_min, self.raw_max)
+        if not np.all((self.raw_min <= raw) & (raw <= self.raw_max)):
+            low, high, worst = self.raw_min * self.lsb, self.raw_max * self.lsb, np.ravel(x)[np.argmax(np.abs(x))]
+            unit = f" {self.unit}" if self.unit else ""
+            raise ValueError(f"{self.name or self} must be within {low:g} and {high:g}{unit}, not {worst:g}")
+        return raw.astype(np.int64) if raw.ndim else int(raw)
+
+    def to_float(self, raw):
+        """Return the float64 values that these integers stand for."""
+        return np.ldexp(np.asarray(raw, float), -self.frac_bits)
 
     @cached_property
     def nameless(self) -> "Q":

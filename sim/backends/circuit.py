@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from golden.datapath.memory_image import MemoryImage
+from golden.numbers.qformat import Q
 from hw.map.control import Control
 from hw.map.memory_map import NODE_FORCE, NODE_STATE, Map, Region
 from hw.parameters import Parameters
@@ -112,5 +113,4 @@ class CircuitMachine:
         self.ratio = self._signed(self.circuit.read(self._program.edge_addresses("ratio")))
 
     def _signed(self, words):
-        top = 1 << self._formats.state - 1
-        return (words.astype(np.int64) ^ top) - top
+        return Q(self._formats.state, 0).from_bits(words.astype(np.int64))

@@ -15,7 +15,7 @@ from sim.encode.units import Units
 def coefficient(x: float, formats: Formats) -> tuple[int, int]:
     """Return ``(raw mantissa, shift)`` of ``x = mantissa * 2**-shift`` with the mantissa in [1/2, 1)."""
     mantissa, exponent = np.frexp(x)
-    raw = int(np.floor(np.ldexp(mantissa, formats.mantissa.frac_bits) + 0.5))
+    raw = (formats.mantissa + formats.mantissa).quantise(mantissa)
     if raw > formats.mantissa.raw_max:
         raw, exponent = raw >> 1, exponent + 1
     return raw, -int(exponent)
@@ -63,10 +63,10 @@ def coefficients(
         "k_shift": k_shift,
         "c": c,
         "c_shift": c_shift,
-        "a_min": ratio(material.a_min, formats),
-        "a_max": ratio(material.a_max, formats),
-        "g1": round(g1 / formats.threshold.lsb),
-        "g2": round(g2 / formats.threshold.lsb),
+        "a_min": formats.ratio.quantise(material.a_min),
+        "a_max": formats.ratio.quantise(material.a_max),
+        "g1": formats.threshold.quantise(g1),
+        "g2": formats.threshold.quantise(g2),
         "force_shift": round(log2(units.force / full)) - 1,
         "creep_shift": creep_shift,
         "first_octave": words.first_octave if words else 0,
@@ -78,7 +78,3 @@ def coefficients(
         value, shift = coefficient(creep * sigma, formats)
         record[f"sigma_{end}"], record[f"sigma_{end}_shift"] = value, shift - creep_shift if value else 0
     return record, words
-
-
-def ratio(a: float, formats: Formats) -> int:
-    return round(a * 2**formats.ratio.frac_bits)

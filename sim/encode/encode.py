@@ -13,7 +13,7 @@ from golden.numbers.qarray import QArray
 from golden.numbers.qformat import Q
 from golden.physics.materials import Material
 from golden.physics.scene import Phase, Scene
-from sim.encode.coefficients import coefficient, coefficients, ratio
+from sim.encode.coefficients import coefficient, coefficients
 from sim.encode.order import order, ranks
 from sim.encode.units import Units, choose
 
@@ -45,7 +45,7 @@ class EncodedScene:
     def node_values(self, raw: np.ndarray, q: Q) -> np.ndarray:
         """Return (N, dim) float64 in the scene's order from (N, 3) integers in the circuit's."""
         values = np.empty((len(raw), self.scene.dim))
-        values[self.node_order] = np.ldexp(raw[:, : self.scene.dim].astype(float), -q.frac_bits)
+        values[self.node_order] = q.to_float(raw[:, : self.scene.dim])
         return values
 
     def positions(self, raw):
@@ -63,7 +63,7 @@ class EncodedScene:
     def ratios(self, raw):
         """Return (E,) ratios."""
         values = np.empty(len(raw))
-        values[self.edge_order] = np.ldexp(raw.astype(float), -self.image.formats.ratio.frac_bits)
+        values[self.edge_order] = self.image.formats.ratio.to_float(raw)
         return values
 
 
@@ -74,7 +74,7 @@ def raw_vectors(values: np.ndarray, q: Q) -> np.ndarray:
     """
     padded = np.zeros((len(values), 3))
     padded[:, : values.shape[1]] = values
-    return QArray.from_float(padded, q, None).raw
+    return q.quantise(padded)
 
 
 def inverse_mass(mass: np.ndarray, units: Units, formats: Formats) -> dict[str, np.ndarray]:
@@ -105,7 +105,7 @@ def encode(scene: Scene, formats: Formats | None = None, *, edge_order: np.ndarr
 
     materials, damper = encode_materials(scene.materials, units, formats)
     x = raw_vectors((scene.mesh.points[node_order] - units.centre) / units.size, formats.position)
-    a0 = np.array([ratio(m.a0, formats) for m in scene.materials], np.int64)[scene.edge_material[edge_order]]
+    a0 = formats.ratio.quantise([m.a0 for m in scene.materials])[scene.edge_material[edge_order]]
     image = MemoryImage(
         formats=formats,
         velocity_shift=units.velocity_shift,

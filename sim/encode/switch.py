@@ -45,7 +45,10 @@ def switch(encoded: EncodedScene, machine, materials: tuple[Material, ...]) -> E
         ratio, natural = switch_material(old, new, *_state(encoded, machine, edges))
         length = natural / encoded.units.size
         for words, values, q in ((image.ratio, ratio, fmt.ratio), (image.length, length, fmt.length)):
-            words[edges] = np.floor(np.ldexp(values, q.frac_bits) + 0.5).astype(np.int64)
+            try:
+                words[edges] = q.quantise(values)
+            except ValueError as error:
+                raise InputError(f"materials.{new.name} must give edges that the circuit can hold: {error}") from None
     machine.take(image)
     return replace(after, image=image)
 
@@ -73,11 +76,11 @@ def _state(encoded: EncodedScene, machine, edges):
     """Return l (m), dl/dt (m/s), a and L (m) of some edges, in the circuit's order."""
     fmt, units, ends = encoded.image.formats, encoded.units, encoded.image.edges[edges].T
     d, w = (
-        np.ldexp((raw[ends[1]] - raw[ends[0]]).astype(float), -q.frac_bits) * unit
+        q.to_float(raw[ends[1]] - raw[ends[0]]) * unit
         for raw, q, unit in ((machine.x, fmt.position, units.size), (machine.v, fmt.velocity, units.velocity))
     )
     length = np.linalg.norm(d, axis=1)
     rate = (d * w).sum(axis=1) / length
-    ratio = np.ldexp(machine.ratio[edges].astype(float), -fmt.ratio.frac_bits)
-    natural = np.ldexp(encoded.image.length[edges].astype(float), -fmt.length.frac_bits) * units.size
+    ratio = fmt.ratio.to_float(machine.ratio[edges])
+    natural = fmt.length.to_float(encoded.image.length[edges]) * units.size
     return length, rate, ratio, natural

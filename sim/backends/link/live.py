@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from golden.numbers.qformat import Q
 from golden.support.errors import InputError
 from hw.link.frame import Frame
 from hw.link.items import Items
@@ -61,13 +62,9 @@ class Live:
             Sum of all forces on the node, loads included: a driven or fixed node's device has to bear its negative.
         """
         (words,) = self._board.exchange([self.payload(velocity)])
-        top = 1 << self._board.parameters.formats.state - 1
-        raw = ((np.array(words) ^ top) - top).reshape(len(self._nodes), 2, AXES)
+        raw = Q(self._board.parameters.formats.state, 0).from_bits(np.array(words)).reshape(len(self._nodes), 2, AXES)
         scene, units, fmt = self._encoded.scene, self._encoded.units, self._encoded.image.formats
-        x, force = (
-            np.ldexp(raw[:, n, : scene.dim].astype(float), -q.frac_bits)
-            for n, q in enumerate((fmt.position, fmt.accumulator))
-        )
+        x, force = (q.to_float(raw[:, n, : scene.dim]) for n, q in enumerate((fmt.position, fmt.accumulator)))
         return x * units.size + units.centre, force * units.force
 
     def payload(self, velocity=None) -> bytes:
