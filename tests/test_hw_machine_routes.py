@@ -10,8 +10,9 @@ import pytest
 from hw_objects import refused, simulate
 
 from golden.datapath.formats import Formats
-from hw.machine import accumulator, host_port, issue_register, memory_ports, node_copies
+from hw.machine import accumulator, completion_counter, host_port, issue_register, memory_ports, node_copies
 from hw.machine.accumulator import Accumulator
+from hw.machine.completion_counter import CompletionCounter
 from hw.machine.core import Core
 from hw.machine.edge import EdgeDatapath, EdgeProcessor
 from hw.machine.host_port import HostPort
@@ -26,6 +27,7 @@ FOLLOWED = {
     "hw/blocks/memory.py": ["READ_LATENCY = 2"],
     "hw/machine/routes.py": ["HANDOVER = 3", "CHOICE = 2", "COPIED = 1", "STAGED = 1", "PORT = 1"],
     "hw/machine/issued.py": ["NEAR = 1"],
+    "hw/machine/core.py": ["LOADING = HANDOVER + 1"],
     "hw/machine/entry_memory.py": ["REGISTERS = 1"],
     "hw/machine/edge_memories.py": ["REGISTERS = 1"],
     "hw/machine/node_pipeline.py": ["NEAR = 1"],
@@ -68,6 +70,10 @@ def register():
     return IssueRegister(width=4)
 
 
+def counter():
+    return CompletionCounter(width=4, first=0)
+
+
 def sums():
     return Accumulator(formats=Formats(), nodes=4)
 
@@ -80,6 +86,7 @@ def core():
     ("module", "name", "value", "make", "message"),
     [
         (issue_register, "LATENCY", 2, register, "the latency of an issue register must be 1, not 2"),
+        (completion_counter, "LATENCY", 0, counter, "the latency of a completion counter must be 1, not 0"),
         (accumulator, "ANNOUNCED", 2, sums, "ANNOUNCED must be at least 3 cycles, not 2"),
         (accumulator, "WRITTEN", 1, sums, "WRITTEN must be at least 2 cycles, not 1"),
         (accumulator, "READ", 1, sums, "READ must be at least 2 cycles, not 1"),

@@ -6,6 +6,9 @@ from amaranth.lib.wiring import In, Out
 
 from hw.machine.interfaces import Completion
 
+LATENCY = 1
+"""Cycles from a completion to the outputs that count it."""
+
 
 class CompletionCounter(wiring.Component):
     """Counts a list's entries as they are done, and compares the count with what the other list's entries need.
@@ -33,9 +36,16 @@ class CompletionCounter(wiring.Component):
         In the next cycle the next entry is in the issue register.
     reached, next_reached : Out(1)
         The needs of the entry in the issue register and of the next are met by the count in this cycle.
+
+    Raises
+    ------
+    ValueError
+        If `LATENCY` isn't 1: there is one register.
     """
 
     def __init__(self, *, width: int, first: int):
+        if LATENCY != 1:
+            raise ValueError(f"the latency of a completion counter must be 1, not {LATENCY}")
         self._first = first
         self.kind = f"completion_counter_{width}_from_{first}"
         super().__init__(

@@ -22,6 +22,9 @@ from hw.map.memory_map import Map
 from hw.parameters import Parameters
 from hw.pipeline.delay import DelayLines
 
+LOADING = HANDOVER + 1
+"""Cycles from the start of a run to the end of the flush of its lists: the host's last writes must have arrived."""
+
 TOP = "rheogate"
 """The Verilog module of the circuit."""
 
@@ -108,7 +111,7 @@ class Core(wiring.Component):
         idle = Signal(init=1)
         loading = Signal(init=1)
         m.d.sync += idle.eq(~busy)
-        past = [lines.later(idle, cycles, name="idle", reset=True) for cycles in range(HANDOVER)]
+        past = [lines.later(idle, cycles, name="idle", reset=True) for cycles in range(LOADING - 1)]
         m.d.sync += loading.eq(Cat(~busy, *past).any())
         return idle, loading
 

@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 from hw.machine import entry_memory, fetch, row_issue
-from hw.machine.core import datapaths
+from hw.machine.completion_counter import LATENCY as COUNTER_LATENCY
+from hw.machine.core import LOADING, completions, datapaths
 from hw.machine.issue_register import LATENCY as ISSUE_LATENCY
-from hw.machine.lane import latency as sums_latency
-from hw.machine.routes import COPIED, HANDOVER
 from hw.parameters import Parameters
 
 
@@ -22,8 +21,9 @@ class Latencies:
 
     @classmethod
     def of(cls, p: Parameters) -> "Latencies":
-        edge, node = datapaths(p)
+        done = completions(*datapaths(p))
+        edge, node = (cycles + COUNTER_LATENCY + ISSUE_LATENCY for cycles in done)
         memories = row_issue.data_latency(p), entry_memory.LATENCY
-        rows, nodes = (HANDOVER + fetch.latency(data) + ISSUE_LATENCY + 1 for data in memories)
+        rows, nodes = (LOADING + fetch.latency(data) + ISSUE_LATENCY for data in memories)
         nodes += p.cycles_per_node > 1  # it is not found ready before it is in the issue register
-        return cls(sums_latency(edge) + ISSUE_LATENCY, node.latency + COPIED + 1 + ISSUE_LATENCY, rows, nodes)
+        return cls(edge, node, rows, nodes)
