@@ -103,17 +103,17 @@ class HostPort(wiring.Component):
         received = _registered(
             m, next(stages), request=bus.request, write=bus.write, address=bus.address, data=bus.write_data
         )
-        place = ADDRESS.unpack(received.address)
+        parts = ADDRESS.unpack(received.address)
         inside = Signal(len(Region), name="inside")
         for r in Region:
             limits = {"index": map_.depth(r), "word": len(map_.words(r)), "lane": map_.lanes(r)}
-            m.d.comb += inside[r].eq(Cat(place[part] < limit for part, limit in limits.items()).all())
+            m.d.comb += inside[r].eq(Cat(parts[part] < limit for part, limit in limits.items()).all())
         ranged = _registered(
             m,
             next(stages),
             request=received.request,
             write=received.write,
-            **place,
+            **parts,
             data=received.data,
             inside=inside,
             in_range=in_range(map_.parameters, received.data),

@@ -53,13 +53,13 @@ class Item:
     """An item of the pipeline, one a cycle: a node, or one of its axes.
 
     ``valid`` and ``last``, the item after which its node is done; its node's ``row`` and its own index in the memories
-    of vectors, ``place``; the bits of its ``stage``; and the cycles from all of these to its sums, ``gathered``.
+    of vectors, ``address``; the bits of its ``stage``; and the cycles from all of these to its sums, ``gathered``.
     """
 
     valid: Value
     last: Value
     row: Value
-    place: Value
+    address: Value
     stage: dict[str, Value]
     gathered: int
 
@@ -78,13 +78,13 @@ class NodePipeline:
         The node's axes by the component of the pipeline that carries them, in their order.
     depth : int
         Words of a memory of vectors.
-    host_place : Value
+    host_address : Value
         The index of the host's word in the memories of vectors, when it reaches their ports.
     """
 
-    def __init__(self, m: Module, lines: DelayLines, updater, item: Item, carried, depth: int, host_place: Value):
+    def __init__(self, m: Module, lines: DelayLines, updater, item: Item, carried, depth: int, host_address: Value):
         self._m, self._lines, self._item, self._carried, self._depth = m, lines, item, carried, depth
-        self._updater, self._datapath, self._host_place = updater, updater.datapath, host_place
+        self._updater, self._datapath, self._host_address = updater, updater.datapath, host_address
         self._formats, self._arrival = updater.parameters.formats, updater.datapath.schedule.arrival
         host = updater.host
         self._active, self._data = self.by_host(host.active), self.by_host(host.data)
@@ -159,7 +159,7 @@ class NodePipeline:
             rams[component] = force = BlockRam(width=self._formats.state, depth=self._depth)
             self._m.submodules[name] = force
             self._write(name, force, own=(self.later(self._item.valid, done), pipe.output(name, done)))
-            self._m.d.sync += force.address.eq(self._host_place)
+            self._m.d.sync += force.address.eq(self._host_address)
         return rams
 
     def _write_states(self, pipe, rams):
@@ -194,18 +194,18 @@ class NodePipeline:
         p = self._updater.parameters
         ram = BlockRam(width=width, depth=self._depth if vector else p.node_rows)
         self._m.submodules[name] = ram
-        place, host = (self._item.place, self._host_place) if vector else (self._item.row, self._index)
-        address = self.later(place, arrival - READ_LATENCY - PORT - self._early(arrival))
+        index, host = (self._item.address, self._host_address) if vector else (self._item.row, self._index)
+        address = self.later(index, arrival - READ_LATENCY - PORT - self._early(arrival))
         registered_ports(self._m, ram, name, self._active, Use(address=host), Use(address=address))
         return ram
 
     def _write(self, name: str, ram: BlockRam, *, vector: bool = True, by_host=None, own=None):
         """Write (strobe, word) of the host and of the pipeline."""
-        host_place = self._host_place if vector else self._index
-        own_place = self.later(self._item.place, self._datapath.done)
+        host_address = self._host_address if vector else self._index
+        own_address = self.later(self._item.address, self._datapath.done)
         uses = [
-            Use() if writer is None else Use(write=writer[0], write_address=place, write_data=writer[1])
-            for writer, place in ((by_host, host_place), (own, own_place))
+            Use() if writer is None else Use(write=writer[0], write_address=address, write_data=writer[1])
+            for writer, address in ((by_host, host_address), (own, own_address))
         ]
         registered_ports(self._m, ram, name, self._active, *uses)
 

@@ -33,11 +33,11 @@ class SerialNodeUpdater(wiring.Component):
         m.d.comb += [serializer.node_valid.eq(self.valid), serializer.node.eq(node)]
         row = Signal.like(self.row, name="axis_row")
         stage = {bit: Signal(name=f"axis_{bit}") for bit in bits}
-        place = Signal(len(row) + len(serializer.axis), name="axis_place")
-        m.d.comb += [Cat(row, *stage.values()).eq(serializer.held), place.eq(Cat(row, serializer.axis))]
+        address = Signal(len(row) + len(serializer.axis), name="axis_address")
+        m.d.comb += [Cat(row, *stage.values()).eq(serializer.held), address.eq(Cat(row, serializer.axis))]
 
         # The serializer is one of the registers between the issue of a node and its sums
-        item = Item(serializer.valid, serializer.last, row, place, stage, GATHERED - 1)
+        item = Item(serializer.valid, serializer.last, row, address, stage, GATHERED - 1)
         carried, depth = {IN_TURN[0]: AXES}, len(AXES) << len(row)
         index, axis = (lines.later(port, HANDOVER - PORT, reset=True) for port in (self.host.index, self.host.axis))
         pipeline = NodePipeline(m, lines, self, item, carried, depth, Cat(index[: len(row)], axis))

@@ -46,8 +46,8 @@ class NodeUpdater(wiring.Component):
         lines, bits = DelayLines(m), named(self.stage)
         item = Item(self.valid, self.valid, self.row, self.row, bits, GATHERED)
         carried = {axis: (axis,) for axis in AXES}
-        place = lines.later(self.host.index, HANDOVER - PORT, reset=True)
-        pipeline = NodePipeline(m, lines, self, item, carried, self.parameters.node_rows, place)
+        address = lines.later(self.host.index, HANDOVER - PORT, reset=True)
+        pipeline = NodePipeline(m, lines, self, item, carried, self.parameters.node_rows, address)
         others = Signal.like(self.mask, name="others")
         m.d.comb += others.eq(~self.mask)
         others, inputs = lines.later(others, READ), {}
