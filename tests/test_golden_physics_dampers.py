@@ -106,6 +106,11 @@ def test_far_past_its_knees_a_branch_has_a_root_all_the_same():
     np.testing.assert_allclose(f * (1 + c1 / c2), size, rtol=1e-9)
 
 
+def test_a_branch_without_c1_stays_within_floats_however_far_it_goes():
+    rho, sigma = Exponential(1e-5, 0.9, 1.5, 1.0).middle_rho_sigma(0.0, np.geomspace(1e-5, 1e5, 50))
+    assert np.array_equal(rho, np.ones(50)) and np.isfinite(sigma).all() and (np.diff(sigma) >= 0).all()
+
+
 def test_force_rises_with_the_trial_force_and_never_jumps():
     c1, damper = 50.0, Exponential(f1=0.5, f2=2.0, c_max=100.0, c_min=1.0)
     g = np.linspace(0, 200, 20001)

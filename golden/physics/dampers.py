@@ -19,6 +19,7 @@ from golden.support.errors import InputError
 
 ROUNDS = 100  # Newton takes 2 to 12 of them, unless f1 and f2 are all but equal
 ROUNDING = 1e-9
+FAINTEST = 1e-100  # of c_min: a branch continued far past g2 would fall below every float otherwise
 
 
 def series(c1, c2):
@@ -40,7 +41,7 @@ def restore(law: str, parameters: dict[str, float]) -> Damper:
 
 
 class Damper(ABC):
-    """A law c2(|f|) in three branches: `c_max` up to the force `f1`, `c_min` from `f2` on, a smooth one between.
+    """A law c2(|f|) in three branches: ``c_max`` up to the force ``f1``, a smooth one, ``c_min`` from ``f2`` on.
 
     The middle branch is c_max exp(-fall(|f|)), where ``fall`` rises from 0 at f1 to ln(c_max / c_min) at f2. The
     formula must hold a little beyond f1 and f2 too: the circuit's table continues the branch past both ends, so that
@@ -97,8 +98,7 @@ class Damper(ABC):
 
     def middle_rho_sigma(self, c1: float, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return rho and sigma of the middle branch at the trial forces ``size`` > 0, continued past both knees."""
-        with np.errstate(divide="ignore"):  # far beyond g2 c2 may be too small for float64
-            return series(c1, self._middle_c2(c1, size))
+        return series(c1, np.maximum(self._middle_c2(c1, size), FAINTEST * self.c_min))
 
     def _middle_c2(self, c1: float, size: np.ndarray) -> np.ndarray:
         """Solve f (1 + c1 / c2(f)) = size by Newton's method on its logarithm with ln f unknown.

@@ -14,7 +14,7 @@ from golden.physics.materials import Material
 
 @dataclass(frozen=True, eq=False)
 class Phase:
-    """A stretch of time with one set of constraints and loads, for N nodes in `dim` dimensions.
+    """A stretch of time with one set of constraints and loads, for N nodes in ``dim`` dimensions.
 
     It starts by replacing the materials, if it brings others, without a jump in force (`golden.physics.switch`). Then
     fixed nodes get velocity 0 and driven nodes their prescribed one; a released node keeps the velocity it had. No

@@ -12,7 +12,7 @@ from golden.support.files import atomic_file
 
 @dataclass(eq=False)
 class Trajectory:
-    """F frames of N nodes and E edges in `dim` dimensions. SI units, float64 (edges: integers).
+    """F frames of N nodes and E edges in ``dim`` dimensions. SI units, float64 (edges: integers).
 
     The reaction is the force that the support or the driving device exerts on a fixed or driven node, 0 on a
     free one. A frame at the end of a phase shows that phase: its velocities and reactions, before the next
