@@ -34,9 +34,56 @@ def test_the_tableau_is_of_fourth_order():
         ((F(1, 2),), (F(1, 2), F(1, 4), F(1, 4)), "reach must have 2 entries, not 1"),
     ],
 )
-def test_a_tableau_that_is_none_is_refused(reach, weight, message):
+def test_coefficients_that_do_not_belong_together_are_refused(reach, weight, message):
     with pytest.raises(ValueError, match=f"^{message}$"):
         Tableau(reach, weight)
+
+
+@pytest.mark.parametrize(
+    ("reach", "weight", "message"),
+    [
+        ((F(1),), (F(1, 2), F(1, 2)), "weights must be 1/6 or 1/3, not 1/2: a stage can only double a slope"),
+        ((F(2, 3),), (F(1, 4), F(3, 4)), "reach must be 1/2 or 1, not 2/3: a stage can only halve a slope"),
+        (
+            (F(1, 3), F(2, 3), F(1)),
+            (F(1, 8), F(3, 8), F(3, 8), F(1, 8)),
+            "reach must be 1/2 or 1, not 1/3: a stage can only halve a slope",
+        ),
+        ((F(1, 2), F(1, 2)), (F(1, 2), F(1, 3), F(1, 6)), "weights must be 1/6 or 1/3, not 1/2: a stage can only"),
+        ((F(1), F(1)), (F(1, 3), F(1, 3), F(1, 3)), "the last weight must be 1/6, not 1/3: the last slope is not"),
+    ],
+    ids=["Heun", "Ralston", "3/8 rule", "weights of 1/2", "last weight of 1/3"],
+)
+def test_a_method_that_the_stages_cannot_compute_is_refused(reach, weight, message):
+    """They computed something else: y' = -y from 1 to 0.83, 0.83 and 0.67 in a step of 1, instead of about 0.4."""
+    with pytest.raises(ValueError, match=f"^{message}"):
+        Tableau(reach, weight)
+
+
+FIVE = Tableau((F(1, 2), F(1), F(1, 2), F(1)), tuple(F(w, 6) for w in (2, 1, 1, 1, 1)))
+
+
+@pytest.mark.parametrize("rule", [rk4, rk4_early])
+@pytest.mark.parametrize("tableau", [RK4, FIVE], ids=["classical", "five stages"])
+def test_the_stages_compute_what_the_tableau_says(rule, tableau):
+    """y' = -y from 1 with a step of 1; the classical method gives 1 - 1 + 1/2 - 1/6 + 1/24 = 0.375."""
+    y, slopes = F(1), []
+    for number in range(tableau.stages):
+        slopes.append(-y)
+        y = 1 + (tableau.reach[number] * slopes[-1] if number < tableau.stages - 1 else 0)
+    exact = 1 + sum(w * k for w, k in zip(tableau.weight, slopes, strict=True))
+    assert tableau != RK4 or exact == F(3, 8)
+
+    q = Q(3, 30)
+    base = value = QArray(np.int64(1 << 30), q, None)
+    total = QArray(np.int64(0), q, None)
+    for number in range(tableau.stages):
+        stage = SimpleNamespace(**{n: QArray(np.int64(bit), BIT, None) for n, bit in tableau.stage(number).items()})
+        slope = 0 - value
+        if number == tableau.stages - 1 and rule is rk4:
+            slope = sixth(slope)
+        total, value = (x.to(q) for x in rule(stage, base, total, slope))
+    assert value.to_float() == pytest.approx(float(exact), abs=1e-8)
 
 
 def test_the_bits_of_a_stage_say_what_the_tableau_says():

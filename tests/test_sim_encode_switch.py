@@ -8,6 +8,7 @@ import pytest
 from rtl_objects import circuit, rtl_machine
 from sim_objects import MATERIALS, block
 
+from golden.datapath.machine import Machine
 from golden.physics.materials import rheological, viscoelastic
 from golden.support.errors import InputError
 from sim.backends.native import NativeMachine
@@ -68,3 +69,12 @@ def test_a_material_beyond_the_units_of_the_run_is_refused():
         r"not up to .* N: begin a run with it",
     ):
         switch(loaded, None, (rheological("dough", 200.0, 0.5, 20.0),))
+
+
+def test_natural_lengths_beyond_their_format_are_refused():
+    """A weak spring would carry the force of a strong one only with a natural length of many sizes."""
+    encoded = encode(block("rheological"))
+    machine = Machine(encoded.image)
+    machine.x = machine.x * 2
+    with pytest.raises(InputError, match=r"materials\.weak must give edges that the circuit can hold: length must be "):
+        switch(encoded, machine, (rheological("weak", 0.1, 0.5, 20.0),))
