@@ -3,9 +3,7 @@
 import sys
 
 from golden.support.command import Parser, execute
-from hw.boards import doctor, flash
-from hw.boards.bitstream import command as bitstream
-from hw.boards.timing import command as timing
+from hw.boards import bitstream, doctor, flash, timing
 from hw.commands import lint, map, verilog
 from hw.docs import command as docs
 

@@ -5,7 +5,7 @@ import re
 
 from golden.datapath.formats import Formats
 from golden.support.errors import InputError
-from hw.families import FAMILIES
+from hw.families.registry import family_names
 from hw.parameters import Parameters
 from hw.sizes import SIZES, WORDS, sizes_of, words_of
 
@@ -32,7 +32,7 @@ def add_circuit(command) -> None:
     for name, default in words_of(Formats()).items():
         text = f"{WORDS[name]} ({default})"
         command.add_argument(f"--{name}", type=whole, default=default, metavar="BITS", help=text)
-    families, default = " or ".join(FAMILIES), Parameters.family
+    families, default = " or ".join(family_names()), Parameters.family
     text = f"devices whose hard blocks it takes, {families} ({default})"
     command.add_argument("--family", default=default, metavar="NAME", help=text)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, make_dataclass
 from amaranth.hdl import Const, Value
 
 from golden.datapath.formats import Formats
-from hw.families import FAMILIES
+from hw.families.registry import get_family
 from hw.pipeline.cost import Cost
 from hw.sizes import EDGE, NODE, SIZES, cycles_per_node, sizes_of
 
@@ -21,10 +21,11 @@ class Parameters(Sizes):
     <size> : int
         Each of `hw.sizes.SIZES`, which says what it may be.
     formats : Formats
-    cost : Cost
+    cost : Cost, optional
+        That of the family unless another is given.
     family : str
-        Of devices, a name in `hw.families.FAMILIES`: which hard blocks the circuit is made of. It computes the same in
-        the same cycles with any.
+        The family of devices whose hard blocks the circuit is made of, a folder of `hw.families`. It computes the same
+        with any, and in the same cycles for the same cost.
 
     Raises
     ------
@@ -34,14 +35,15 @@ class Parameters(Sizes):
     """
 
     formats: Formats = field(default_factory=Formats)
-    cost: Cost = field(default_factory=Cost)
+    cost: Cost | None = None
     family: str = "generic"
 
     def __post_init__(self):
         for name, value in sizes_of(self).items():
             SIZES[name].check(value)
-        if self.family not in FAMILIES:
-            raise ValueError(f"family must be {' or '.join(FAMILIES)}, not {self.family!r}")
+        family = get_family(self.family)
+        if self.cost is None:
+            object.__setattr__(self, "cost", family.cost)
         longest = max(EDGE.width, NODE.width)
         if self.formats.state < longest:
             raise ValueError(f"state must be at least {longest} bits, as a list's entry has, not {self.formats.state}")

@@ -9,7 +9,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hw.emit.verilog import convert
-from hw.families import FAMILIES, MODELS
+from hw.families.registry import get_family
 from sim.backends.verilated import library, opened
 
 SHIM = Path(__file__).with_name("twins.cpp")
@@ -57,8 +57,10 @@ def run(blocks, inputs: list[dict[str, np.ndarray]], folder: Path, family: str =
         To build in.
     family : str
     """
-    texts = [convert(Blocks(blocks), f"blocks_{name}", FAMILIES[name]) for name in ("generic", family)]
-    text = "\n".join([TOP.format(last=SLOT * len(inputs) - 1, family=family), *texts, MODELS[family].read_text()])
+    texts = [convert(Blocks(blocks), f"blocks_{name}", get_family(name).blocks) for name in ("generic", family)]
+    text = "\n".join(
+        [TOP.format(last=SLOT * len(inputs) - 1, family=family), *texts, get_family(family).models.read_text()]
+    )
     twins = opened(library("twins", text, SHIM, folder=folder)).twins
     stimulus = np.stack([_slot(block, values) for block, values in zip(blocks, inputs, strict=True)], axis=1)
     outputs = np.zeros((2, *stimulus.shape), np.uint64)

@@ -8,7 +8,6 @@ import pytest
 
 from golden.support.errors import InputError
 from hw.boards import board as boards
-from hw.boards.timing.result import Result
 from hw.sizes import SIZES
 
 TEXT = (boards.FOLDER / "ulx3s-85f.toml").read_text()
@@ -32,7 +31,7 @@ def refused(tmp_path):
 @pytest.mark.parametrize("name", boards.names())
 def test_every_file_is_a_board(name):
     board = boards.load(name)
-    assert board.parameters().family == {"xilinx": "generic"}.get(board.family, board.family)
+    assert board.parameters().family == board.family
 
 
 def test_a_board_has_its_circuit_and_takes_another():
@@ -43,9 +42,8 @@ def test_a_board_has_its_circuit_and_takes_another():
     assert (chosen.lanes, chosen.tables, chosen.nodes) == (2, 1, board.circuit.nodes)
 
 
-def test_a_circuit_has_a_size_of_each_kind():
+def test_a_circuit_has_all_sizes_of_parameters():
     assert list(boards.Circuit.__struct_fields__) == list(SIZES)
-    assert set(SIZES) <= set(Result.__struct_fields__)
 
 
 def test_an_unknown_board_lists_those_known():
@@ -101,8 +99,7 @@ def test_a_key_that_is_missing_or_of_another_type(path, refused):
         ("grade = 6", "grade = 0", "grade must be a whole number of at least 1, not 0"),
         ("target_mhz = 150.0", "target_mhz = 0.0", "target_mhz must be a number above 0, not 0.0"),
         ("target_mhz = 150.0", "target_mhz = inf", "target_mhz must be a finite number, not inf"),
-        ("block_rams = 208", 'block_rams = "208"', "holds.block_rams must be a whole number, not '208'"),
-        ("multiplier = 170.0", "multiplier = true", "limits_mhz.multiplier must be a number, not true"),
+        ("grade = 6", "grade = 7", "grade must be 6, not 7"),
         ('pull = "down"', 'pull = "off"', "pins.reset.pull must be none or up or down, not 'off'"),
         ('pin = "M1"', 'pin = "G2"', "pins.rx.pin must be another one than that of clk, not 'G2'"),
         (
@@ -110,23 +107,20 @@ def test_a_key_that_is_missing_or_of_another_type(path, refused):
             "ready =",
             "pins.ready must not be there: the keys known here are clk, rx, tx, reset, busy, locked",
         ),
-        (
-            'family = "ecp5"\ndevice = "85k"',
-            'family = "xilinx"\ndevice = "xc7a100tcsg324-1"',
-            "limits_mhz must be given for ecp5 alone",
-        ),
         ("lanes = 4", "lanes = 99", "circuit.lanes must be a whole number from 1 to 6, not 99"),
         ("lanes = 4", "lanes = 4.5", "circuit.lanes must be a whole number, not 4.5"),
         (
             "grade = 6",
             "grade = 6\nspeed = 6",
             "speed must not be there: the keys known here are family, device, package, "
-            "grade, target_mhz, oscillator_mhz, clock_mhz, baud, loader, pins, holds, circuit, limits_mhz, crowded",
+            "grade, target_mhz, oscillator_mhz, clock_mhz, baud, loader, pins, circuit, no_wide_luts",
         ),
+        ("nodes = 512", "", "circuit.nodes must be given"),
+        ('family = "ecp5"', 'family = "generic"', "family must be ecp5 or gowin or xilinx, not 'generic'"),
         (
-            "luts =",
-            "slices = 1\nluts =",
-            "holds.slices must not be there: the keys known here are luts, ffs, multipliers, block_rams",
+            "lanes = 4",
+            "lines = 1\nlanes = 4",
+            f"circuit.lines must not be there: the keys known here are {', '.join(SIZES)}",
         ),
     ],
 )

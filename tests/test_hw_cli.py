@@ -231,7 +231,7 @@ IMPOSSIBLE = {
     "--state 45": "--state must be 24 to 44 bits, not 45",
     "--operand 20": "--operand must be at most 18 bits, half of a state word, not 20",
     "--operand 12 --state 32": "--state must be at least 34 bits, as a list's entry has, not 32",
-    "--family ice40": "--family must be generic or ecp5 or gowin, not 'ice40'",
+    "--family ice40": "--family must be ecp5 or generic or gowin or xilinx, not 'ice40'",
     "--lanes two": f"argument --lanes: must be a whole number, not 'two' {HELP}",
     "--lanes 1.5": f"argument --lanes: must be a whole number, not '1.5' {HELP}",
     "--lanes": f"argument --lanes: expected one argument {HELP}",

@@ -19,8 +19,8 @@ from hw.blocks.multiplier import Multiplier
 from hw.blocks.shifter import ShiftStage
 from hw.emit.lint import lint
 from hw.emit.verilog import TOP, convert, modules
-from hw.families import FAMILIES, MODELS
-from hw.families.ecp5.blocks import BLOCKS
+from hw.families.ecp5.blocks import BLOCK_RAM_SHAPES
+from hw.families.registry import get_family
 from hw.machine.core import Core
 from hw.parameters import Parameters
 from sim.backends.native import NativeMachine
@@ -64,8 +64,8 @@ def multipliers(asked):
 
 def rams(asked, rng):
     """Those of the circuit, then each tiling: full and with contents, and empty with one bit too many."""
-    full = [(width, depth, tuple(rng.integers(1 << width, size=depth).tolist())) for width, depth in BLOCKS]
-    others = [(1, 1), (36, 3), (5, 513), *[(width + 1, depth) for width, depth in BLOCKS[1:]]]
+    full = [(width, depth, tuple(rng.integers(1 << width, size=depth).tolist())) for width, depth in BLOCK_RAM_SHAPES]
+    others = [(1, 1), (36, 3), (5, 513), *[(width + 1, depth) for width, depth in BLOCK_RAM_SHAPES[1:]]]
     return sorted(asked.rams) + full + [(*size, ()) for size in others]
 
 
@@ -140,7 +140,8 @@ def test_what_a_block_ram_starts_with_is_read_as_it_is(twins):
 
 
 def placed(block):
-    return re.findall(r"^  (MULT18X18D|PDPW16KD|DP16KD) #", convert(block, "block", FAMILIES["ecp5"]), re.MULTILINE)
+    text = convert(block, "block", get_family("ecp5").blocks)
+    return re.findall(r"^  (MULT18X18D|PDPW16KD|DP16KD) #", text, re.MULTILINE)
 
 
 @pytest.mark.parametrize(
@@ -163,7 +164,7 @@ def placed(block):
 def test_a_memory_takes_as_few_blocks_as_hold_it(width, depth, blocks):
     assert placed(BlockRam(width=width, depth=depth)) == blocks
     if blocks:
-        assert len(blocks) == min(math.ceil(width / bits) for bits, words in BLOCKS if words >= depth)
+        assert len(blocks) == min(math.ceil(width / bits) for bits, words in BLOCK_RAM_SHAPES if words >= depth)
 
 
 @pytest.mark.parametrize(
@@ -193,7 +194,7 @@ def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypa
     """In the models a word that is read while it is written is spoilt: the circuit relies on none."""
     image = random_image(rng)
     lane, top, core = emitted
-    models = MODELS["ecp5"].read_text()
+    models = get_family("ecp5").models.read_text()
     monkeypatch.setattr(sim.backends.simulated_circuit, "emit", lambda parameters: (top + lane + models, core))
     circuit = rtl_machine(image, parameters=core.parameters, folder=BUILD)
     model = NativeMachine(image)
@@ -206,7 +207,7 @@ def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypa
 
 
 def test_verilator_finds_nothing_but_what_is_waived(emitted, tmp_path):
-    path, excused = tmp_path / "rheogate.v", MODELS["ecp5"].with_suffix(".vlt").read_text()
+    path, excused = tmp_path / "rheogate.v", get_family("ecp5").waivers.read_text()
     path.write_text("\n".join(emitted[:2]))
     assert lint(path, top=TOP, family="ecp5") == []
     found = lint(path, top=TOP, family="ecp5", waivers=None)

@@ -11,7 +11,7 @@ from test_hw_blocks_multiplier import SHAPES, operands
 from hw.blocks.multiplier import Multiplier
 from hw.emit.lint import lint
 from hw.emit.verilog import TOP, convert, modules
-from hw.families import FAMILIES
+from hw.families.registry import get_family
 from hw.machine.core import Core
 from hw.parameters import Parameters
 from sim.backends.rtl import BUILD
@@ -50,7 +50,7 @@ def test_multipliers_have_their_twins_bits_in_the_same_cycle(rng):
 @pytest.mark.parametrize(("width", "blocks"), [(18, 1), (19, 0), (1, 1)])
 def test_a_multiplier_that_does_not_fit_stays_generic(width, blocks):
     for a, b in ((width, 18), (18, width)):
-        text = convert(Multiplier(signed(a), unsigned(b), registers=3), "block", FAMILIES["gowin"])
+        text = convert(Multiplier(signed(a), unsigned(b), registers=3), "block", get_family("gowin").blocks)
         assert len(re.findall(r"^  MULT27X36 ", text, re.MULTILINE)) == blocks
 
 

@@ -48,7 +48,7 @@ def test_an_updater_takes_a_cycle_for_each_share_of_a_nodes_axes():
 
 @pytest.mark.parametrize("family", ["x", "ECP5", "", None])
 def test_a_family_that_nobody_knows(family):
-    refused(lambda: Parameters(family=family), f"family must be generic or ecp5 or gowin, not {family!r}")
+    refused(lambda: Parameters(family=family), f"family must be ecp5 or generic or gowin or xilinx, not {family!r}")
 
 
 def test_a_list_entry_fits_a_state_word():

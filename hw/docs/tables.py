@@ -1,10 +1,9 @@
 """The tables of README.md and docs/ that follow from the code, as Markdown."""
 
 from golden.datapath import formats
-from hw.boards.bitstream import command as bitstream
-from hw.boards.bitstream import result as build
-from hw.boards.timing import result as timing
-from hw.docs.boards import board_list
+from hw.boards import board as boards
+from hw.boards import tables
+from hw.boards.result import Build, Timing, published
 from hw.emit.latencies import latencies
 from hw.map.control import REGISTERS
 from hw.map.memory_map import Map, Region
@@ -36,15 +35,15 @@ def register_table(parameters: Parameters) -> str:
 
 
 def timing_table(parameters: Parameters) -> str:
-    return timing.published()
+    return tables.markdown(boards.timed(), published(Timing), tables.TIMING)
 
 
 def build_table(parameters: Parameters) -> str:
-    return build.published(bitstream.kept())
+    return tables.markdown(boards.names(), published(Build), tables.BUILDS)
 
 
 def board_table(parameters: Parameters) -> str:
-    return board_list(bitstream.kept())
+    return tables.markdown(boards.names(), published(Build), tables.SUMMARY)
 
 
 TABLES = {

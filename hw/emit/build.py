@@ -11,7 +11,6 @@ from golden.support.files import write_text
 from golden.support.paths import ROOT
 from hw.emit import manifest
 from hw.emit.verilog import emit
-from hw.families import FAMILIES
 from hw.parameters import Parameters
 from hw.sizes import summary
 
@@ -51,7 +50,7 @@ def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
 
 def describe(p: Parameters) -> str:
     formats = f"{p.formats.operand}-bit operands, {p.formats.state}-bit states"
-    return f"{summary(p)}, {formats}" + (f", for {p.family}" if FAMILIES[p.family] else "")
+    return f"{summary(p)}, {formats}" + (f", for {p.family}" if p.family != Parameters.family else "")
 
 
 def key_of(parameters: Parameters) -> str:

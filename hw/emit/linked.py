@@ -1,7 +1,7 @@
 """The Verilog of the circuit behind its link."""
 
 from hw.emit.verilog import convert, emit
-from hw.families import FAMILIES
+from hw.families.registry import get_family
 from hw.link.top import DEVICE, Linked
 from hw.parameters import Parameters
 
@@ -10,7 +10,7 @@ LINKED = "rheogate_linked"
 
 def emit_link(top: Linked, family: str) -> str:
     """Return the Verilog text with the module `LINKED` and its device, but not its core."""
-    platform = FAMILIES[family]
+    platform = get_family(family).blocks
     return f"{convert(top.device(), DEVICE, platform)}\n{convert(top, LINKED, platform)}"
 
 

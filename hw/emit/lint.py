@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from golden.support.errors import InputError
-from hw.families import MODELS
+from hw.families.registry import get_family
 
 WAIVERS = Path(__file__).with_name("waivers.vlt")
 
@@ -13,8 +13,7 @@ WAIVERS = Path(__file__).with_name("waivers.vlt")
 def lint(verilog: Path, *, top: str, waivers: Path | None = WAIVERS, family: str = "generic") -> list[str]:
     """Return the warnings of ``verilator --lint-only -Wall`` on a file that ``waivers`` does not cover, a line each.
 
-    The models of a family's primitives, `hw.families.MODELS`, are linted with it; their waivers are in a file beside
-    them.
+    The models of the family's primitives are linted with it; the family's own waivers cover them.
 
     Raises
     ------
@@ -25,9 +24,9 @@ def lint(verilog: Path, *, top: str, waivers: Path | None = WAIVERS, family: str
     if package is None:
         raise InputError("verilator must be installed (make sets up .venv with it), but is not")
     program = Path(package.origin).parent / "bin" / "verilator"
-    models = MODELS.get(family)
-    excused = [waivers, models and models.with_name("waivers.vlt")] if waivers else []
-    files = [str(path.resolve()) for path in (*excused, models, verilog) if path]
+    devices = get_family(family)
+    excused = [waivers, devices.waivers] if waivers else []
+    files = [str(path.resolve()) for path in (*excused, devices.models, verilog) if path]
     command = [str(program), "--lint-only", "-Wall", "--quiet", *files, "--top-module", top]
     done = subprocess.run(command, capture_output=True, text=True)
     said = [line for line in done.stderr.splitlines() if line.startswith("%")]

@@ -21,7 +21,7 @@ def netlist(component: wiring.Component, name: str, platform=None) -> str:
 
     A component with an attribute ``kind`` is called so, any other after its class; one that elaborates to an instance
     (`hw.blocks.placed.Placed`) stays one. Elaborates the component; the wires of its submodules' ports are renamed
-    after submodule and port. The components may ask ``platform`` for modules of its own (`hw.families`).
+    after submodule and port. The components may ask ``platform`` for modules of its own (`hw.families.family.Blocks`).
 
     Raises
     ------

@@ -9,7 +9,7 @@ from amaranth.lib import wiring
 from hw.blocks.placed import Placed
 from hw.emit.names import readable
 from hw.emit.netlist import netlist
-from hw.families import FAMILIES
+from hw.families.registry import get_family
 from hw.machine.core import TOP, Core
 from hw.machine.edge import EdgeDatapath
 from hw.machine.lane import Lane, members
@@ -26,7 +26,7 @@ def placed_lane(parameters: Parameters, datapath: EdgeDatapath) -> Placed:
 @cache
 def modules(parameters: Parameters) -> tuple[str, str, Core]:
     """Return the Verilog of `LANE` and of `TOP`, each with its parts, and the circuit they were made from."""
-    core, platform = Core(parameters, placed_lane), FAMILIES[parameters.family]
+    core, platform = Core(parameters, placed_lane), get_family(parameters.family).blocks
     return convert(Lane(parameters, core.datapath), LANE, platform), convert(core, TOP, platform), core
 
 

@@ -25,24 +25,23 @@ def on_boards(scene: Scene, folder=None) -> list[dict]:
     the cycle model (`sim.results.cycles`), from which ``step_us`` and ``real_time`` (simulated time / time) follow.
     """
     from hw.boards import board as boards
-    from hw.boards.timing import result as timing  # Amaranth is slow to load
+    from hw.boards.result import Timing, published  # Amaranth is slow to load
 
-    found = []
-    for name in boards.timed():
-        path = (folder or timing.KEPT) / f"{name}.json"
-        of_board = {"board": name, "timed": path.exists()}
-        found.append(of_board | (_timed(scene, timing.read(path, timing.Result)) if path.exists() else {}))
-    return found
+    results = published(Timing, folder)
+    return [
+        {"board": name, "timed": name in results} | (_timed(scene, results[name]) if name in results else {})
+        for name in boards.timed()
+    ]
 
 
 def clock(board: str, folder=None) -> float:
     """Return the clock (MHz) of a board's timing result. Raises `InputError` if there is none."""
-    from hw.boards.timing import result as timing
+    from hw.boards.result import Timing, published
 
-    path = (folder or timing.KEPT) / f"{board}.json"
-    if not path.exists():
+    timing = published(Timing, folder).get(board)
+    if timing is None:
         raise InputError(f"--clock must be given, as {board} has not been timed (make timing BOARD={board})")
-    return timing.read(path, timing.Result).clock_mhz
+    return timing.clock_mhz
 
 
 def _timed(scene: Scene, timing) -> dict:
@@ -50,7 +49,7 @@ def _timed(scene: Scene, timing) -> dict:
     from hw.sizes import sizes_of
     from sim.results.cycles import Wavefront
 
-    parameters = Parameters(**sizes_of(timing))
+    parameters = Parameters(**sizes_of(timing.circuit))
     sizes = {"lanes": parameters.lanes, "updates": parameters.updates, "axes": parameters.axes}
     entry = sizes | {"clock_mhz": timing.clock_mhz}
     try:

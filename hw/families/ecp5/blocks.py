@@ -1,36 +1,33 @@
-"""Lattice ECP5: multipliers and block RAMs with their own registers, which no tool puts there by itself.
+"""Blocks of ECP5 primitives: multipliers and block RAMs with the registers inside them, which no tool uses by itself.
 
-``ecp5.v``, beside this file, has behavioural models of what is used here.
+``models.v``, beside this file, has behavioural models of the primitives.
 """
 
 from amaranth.hdl import Cat, ClockSignal, Const, Instance, Module, Signal, Value
 
-WIDTH = 18
-"""Bits of a multiplier's operand."""
+from hw.families.family import Blocks
 
-BLOCKS = ((36, 512), (18, 1024), (9, 2048), (4, 4096), (2, 8192), (1, 16384))
-"""(bits, words) of a block RAM, the widest first."""
+WIDTH = 18
+"""Operand bits of a multiplier."""
+
+BLOCK_RAM_SHAPES = ((36, 512), (18, 1024), (9, 2048), (4, 4096), (2, 8192), (1, 16384))
+"""(bits, words) that a block RAM can be, the widest first."""
 
 ADDRESS_BITS = 14
-"""A block RAM's address is that of a bit: a wider word leaves the lowest ones unused."""
+"""Bits of a block RAM's address, which addresses a bit: a wider word leaves the lowest address bits unused."""
 
 LOW, HIGH = Const(0, 1), Const(1, 1)
 
-ONE_OF_TWO = 0xCACA
-"""Contents of a lookup table: C ? B : A, whatever D."""
+SELECT = 0xCACA
+"""Contents of a lookup table: C ? B : A; D is not used."""
 
-ONE_OF_TWO_OR_NONE = 0x00CA
-"""The same, or 0 if D."""
+SELECT_OR_ZERO = 0x00CA
+"""Contents of a lookup table: D ? 0 : C ? B : A."""
 
 
-class Ecp5:
-    """Modules with primitives for the blocks of `hw.blocks`, asked for by their ``elaborate``.
-
-    Each method returns None where the family has nothing better than the generic module.
-    """
-
+class Ecp5Blocks(Blocks):
     def get_multiplier(self, multiplier) -> Module | None:
-        """A MULT18X18D: registers at its inputs and its output, a third one between, or behind it, apart."""
+        """A MULT18X18D with registers at its inputs and its output, and a third one between them or outside of it."""
         operands = multiplier.a, multiplier.b
         inside = multiplier.registers - multiplier.apart
         if inside > 3 or max(map(len, operands)) > WIDTH:
@@ -44,17 +41,17 @@ class Ecp5:
             ports |= {f"i_SIGNED{name}": HIGH if signed else LOW, f"i_SOURCE{name}": LOW}
             ports |= _inputs(name, operand, WIDTH, beyond=operand[-1] if signed else LOW)
         product = _word("product", len(multiplier.product))
-        behind = Cat(product)
+        result = Cat(product)
         if multiplier.apart:
-            behind = Signal(len(product), name="apart", reset_less=True)
-            m.d.sync += behind.eq(Cat(product))
-        m.d.comb += multiplier.product.eq(behind)
+            result = Signal(len(product), name="apart", reset_less=True)
+            m.d.sync += result.eq(Cat(product))
+        m.d.comb += multiplier.product.eq(result)
         m.submodules.block = Instance("MULT18X18D", p_GSR="DISABLED", **clocks, **ports, **_outputs("P", product))
         return m
 
     def get_shift_stage(self, stage) -> Module | None:
-        """Two lookup tables and the multiplexer behind them for each bit, which no tool finds; where two sources are
-        zeros, one lookup table."""
+        """Two lookup tables and the mux that joins them for each bit, which no tool finds; one lookup table where two
+        of the four sources are zero."""
         if len(stage.times) == 1:
             return None
         m = Module()
@@ -65,19 +62,19 @@ class Ecp5:
             sources = [stage.source(n, times) for times in range(4)]
             a, b, c, d = (LOW if source is None else source for source in sources)
             if all(source is None for source in sources[2:]):
-                m.submodules[f"lut_{n}"] = _lookup(ONE_OF_TWO_OR_NONE, bit, A=a, B=b, C=once, D=twice)
+                m.submodules[f"lut_{n}"] = _lookup(SELECT_OR_ZERO, bit, A=a, B=b, C=once, D=twice)
                 continue
             halves = Signal(2, name=f"halves_{n}")
             for half, pair in enumerate(((a, b), (c, d))):
-                table = _lookup(ONE_OF_TWO, halves[half], A=pair[0], B=pair[1], C=once, D=LOW)
+                table = _lookup(SELECT, halves[half], A=pair[0], B=pair[1], C=once, D=LOW)
                 m.submodules[f"lut_{n}_{half}"] = table
             m.submodules[f"mux_{n}"] = Instance("PFUMX", i_BLUT=halves[0], i_ALUT=halves[1], i_C0=twice, o_Z=bit)
         return m
 
     def get_block_ram(self, ram) -> Module | None:
-        """As few block RAMs as hold it side by side, with their output registers: each has some bits of every word, so
-        that nothing has to choose between them afterwards."""
-        fitting = [bits for bits, words in BLOCKS if words >= ram.depth]
+        """As few block RAMs side by side as hold the memory, with their output registers. Each holds some bits of every
+        word, so that no mux follows."""
+        fitting = [bits for bits, words in BLOCK_RAM_SHAPES if words >= ram.depth]
         if not fitting:
             return None
         m, bits = Module(), fitting[0]
@@ -98,7 +95,7 @@ def _lookup(contents: int, output, **inputs) -> Instance:
 
 
 def _wide(ram, bits, data, read, parameters) -> Instance:
-    """One port to write, one to read, both of 36 bits. The two halves of what is read are swapped."""
+    """A write port and a read port of 36 bits. The primitive swaps the two halves of the word that is read."""
     return Instance(
         "PDPW16KD",
         p_DATA_WIDTH_W=bits, p_DATA_WIDTH_R=bits, p_REGMODE="OUTREG", **parameters,
@@ -111,7 +108,7 @@ def _wide(ram, bits, data, read, parameters) -> Instance:
 
 
 def _dual_port(ram, bits, data, read, parameters) -> Instance:
-    """Two ports of at most 18 bits: A writes, B reads."""
+    """Two ports of at most 18 bits: port A writes, port B reads."""
     return Instance(
         "DP16KD",
         p_DATA_WIDTH_A=bits, p_DATA_WIDTH_B=bits, p_REGMODE_B="OUTREG", **parameters,
@@ -125,31 +122,32 @@ def _dual_port(ram, bits, data, read, parameters) -> Instance:
 
 
 def _address(address, bits: int, enables=0) -> list[Value]:
-    """Of a word's first bit, the ninth bits of bytes not counted. A wide word doesn't need the lowest bits, which are
-    its bytes' ``enables`` instead."""
+    """The address of a word's first bit, with eight bits counted for each byte of nine. A wide word doesn't need the
+    lowest address bits; the primitive takes them for its byte ``enables``."""
     unused = (bits - bits // 9).bit_length() - 1
     return [HIGH] * enables + [LOW] * (unused - enables) + list(address)
 
 
 def _inputs(name: str, bits, count: int, beyond=LOW) -> dict[str, Value]:
-    """Pins ``name0``, ``name1`` ... with ``bits``, those that are left with ``beyond``."""
+    """Connect ``bits`` to the pins ``name0``, ``name1`` ..., and ``beyond`` to those that are left."""
     return {f"i_{name}{n}": bits[n] if n < len(bits) else beyond for n in range(count)}
 
 
 def _outputs(name: str, bits, first=0) -> dict[str, Value]:
+    """Connect ``bits`` to the pins from ``name<first>`` on."""
     return {f"o_{name}{first + n}": bit for n, bit in enumerate(bits)}
 
 
 def _word(name: str, count: int) -> list[Signal]:
-    """A wire of its own for each pin."""
+    """Separate wires, one for each pin."""
     return [Signal(name=f"{name}_{n}") for n in range(count)]
 
 
 def _initial(contents: list[int], bits: int) -> dict[str, str]:
-    """A block RAM's first contents as its parameters want them, nothing if they are 0.
+    """Return a block RAM's initial contents as its parameters, none if all are 0.
 
-    A block holds bytes of nine bits. A word narrower than that is in the lower eight, a wider one in several. Each
-    parameter has 16 pairs of bytes, two bits left out behind each pair.
+    A block holds bytes of nine bits. Narrower words share the lower eight of a byte, a wider word takes several bytes.
+    Each parameter has 16 pairs of bytes, with two unused bits after each pair.
     """
     in_a_byte, stride = max(1, 8 // bits), max(bits, 9)
     flat = 0

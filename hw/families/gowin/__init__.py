@@ -1,0 +1,1 @@
+"""Gowin Arora V (GW5A)."""

@@ -1,21 +1,20 @@
-"""Gowin Arora V (GW5A): multipliers, which Yosys doesn't find for this family. Block RAMs it finds by itself.
+"""Blocks of Gowin primitives: multipliers, which Yosys doesn't infer for the GW5A; block RAMs it infers.
 
-``gowin.v``, beside this file, has a behavioural model of what is used here.
+``models.v``, beside this file, has a behavioural model of the primitive.
 """
 
 from amaranth.hdl import Cat, ClockSignal, Const, Instance, Module, Signal
 
 from hw.blocks.multiplier import WIDTH
+from hw.families.family import Blocks
 
 A_BITS, B_BITS, PRODUCT_BITS = 27, 36, 63
-"""Of a MULT27X36, all signed."""
+"""Widths of a MULT27X36, all signed."""
 
 
-class Gowin:
-    """Modules with primitives for the blocks of `hw.blocks`, as `hw.families.ecp5.blocks.Ecp5`."""
-
+class GowinBlocks(Blocks):
     def get_multiplier(self, multiplier) -> Module | None:
-        """A MULT27X36 between registers of the fabric: the tools don't write those inside of this device."""
+        """A MULT27X36 between registers of the fabric: the open tools can't configure those inside the block."""
         operands = multiplier.a, multiplier.b
         if max(map(len, operands)) > WIDTH:
             return None
@@ -42,5 +41,6 @@ class Gowin:
 
 
 def _extended(operand: Signal, bits: int):
+    """Return the operand with its sign or with zeros above it."""
     above = operand[-1] if operand.shape().signed else Const(0, 1)
     return Cat(operand, above.replicate(bits - len(operand)))

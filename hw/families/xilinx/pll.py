@@ -1,16 +1,8 @@
 """The 7 series' PLLE2_BASE."""
 
-from hw.families.pll import Limits
+from hw.families.pll import Pll
 
-# For the slowest speed grade: oscillator, comparison of phases and oscillation as others quote the data sheet, DS181
-# (table 38, "PLL Specification"), multiplier and output divider as UG953 has them. From memory: the other divider, and
-# 464 MHz, which a global buffer takes, where the PLL gives more. The vendor's tool refuses what it can't make
-LIMITS = Limits(
-    "xilinx", oscillator=(19, 800), phase=(19, 450), oscillation=(800, 1600), clock=(6.25, 464),
-    divide=(1, 56), multiply=(2, 64), output=(1, 128),
-)  # fmt: skip
-
-VERILOG = """module {name}(input oscillator, output clock, output locked);
+TEMPLATE = """module {name}(input oscillator, output clock, output locked);
   wire feedback, out;
   PLLE2_BASE #(
     .CLKIN1_PERIOD({period:.3f}), .DIVCLK_DIVIDE({d.divide}), .CLKFBOUT_MULT({d.multiply}), .CLKOUT0_DIVIDE({d.output})
@@ -22,11 +14,10 @@ VERILOG = """module {name}(input oscillator, output clock, output locked);
 endmodule
 """
 
-
-def verilog(name: str, oscillator_mhz: float, clock_mhz: float) -> tuple[str, float]:
-    """(the module ``name`` with the ports oscillator, clock and locked, the clock that it gives in MHz)
-
-    Raises `InputError` for a clock that can't be made.
-    """
-    d = LIMITS.dividers(oscillator_mhz, clock_mhz)
-    return VERILOG.format(name=name, period=1000 / oscillator_mhz, d=d), d.mhz(oscillator_mhz)
+# For the slowest speed grade: oscillator, phase detector and VCO as others quote the data sheet, DS181 (table 38, "PLL
+# Specification"); multiplier and output divider as UG953 has them. From memory: the input divider, and 464 MHz, the
+# limit of a global buffer, which is below the PLL's. Vivado refuses dividers that the device doesn't have
+PLL = Pll(
+    family="xilinx", oscillator=(19, 800), phase_detector=(19, 450), vco=(800, 1600), clock=(6.25, 464),
+    divide=(1, 56), multiply=(2, 64), output=(1, 128), template=TEMPLATE,
+)  # fmt: skip

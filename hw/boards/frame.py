@@ -1,4 +1,4 @@
-"""A frame for static timing: the circuit's ports on shift registers, so that neither pins nor their paths count."""
+"""A frame for static timing: the circuit's ports on shift registers, so that no path goes to a pin."""
 
 from amaranth.hdl import Cat, ClockDomain, ClockSignal, Module, ResetSignal, Signal
 from amaranth.lib import wiring
@@ -10,17 +10,17 @@ from hw.machine.core import Core
 from hw.parameters import Parameters
 
 FRAME, CORE = "timing", "core"
-"""Names of the frame's module and of the circuit in it."""
+"""Names of the frame's module and of the circuit's instance in it."""
 
 
 class Frame(wiring.Component):
-    """Every input of the circuit is a bit of one shift register, every output goes into a bit of another: nothing of
-    the circuit is unused, and every path that is timed is one of its own or of the length that a host's would have.
+    """Every input of the circuit is a bit of one shift register, every output goes into a bit of another. So synthesis
+    removes nothing, and every path that is timed is the circuit's own, or as long as one to a host would be.
 
     Members
     -------
     clk, reset, serial_in : In(1)
-        The reset passes two registers, as on a board.
+        ``reset`` passes two registers, as on a board.
     serial_out : Out(1)
     """
 
@@ -46,6 +46,6 @@ class Frame(wiring.Component):
 
 
 def framed(parameters: Parameters) -> str:
-    """The Verilog of the circuit in its frame, module `FRAME`."""
+    """Return the Verilog of the circuit in its frame, the module `FRAME`."""
     text, core = emit(parameters)
     return f"{text}\n{convert(Frame(core), FRAME)}"
