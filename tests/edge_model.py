@@ -1,4 +1,4 @@
-"""The integer model of an edge (`golden.datapath.edge`) that tells for which edges each of its roundings saturated."""
+"""The integer model of an edge (`golden.datapath.edge`), with the edges for which each rounding saturated."""
 
 from collections import Counter
 
@@ -12,7 +12,7 @@ from golden.numbers.qformat import Q
 
 
 class Watch:
-    """What happened, in order.
+    """A record of roundings and faults, in order.
 
     Attributes
     ----------
@@ -21,7 +21,7 @@ class Watch:
     flagged : list of (name, mask)
         Every other report of a fault.
     limits : Counter
-        How many roundings gave just the largest or smallest integer, (name, "on"), or one beyond it, (name, "beyond");
+        Roundings that gave the largest or smallest integer, (name, "on"), or one beyond, (name, "beyond");
         counted only if asked for.
     """
 
@@ -86,7 +86,7 @@ class EdgeModel:
         return self._watch.limits
 
     def faults(self):
-        """(the graph's operation, name of the fault, mask) for each operation that reported one."""
+        """Return (the graph's operation, name of the fault, mask) for each operation that reported one."""
         rounding = [node for node in self._graph.operations if node.kind in ("round", "shift_right") and node.fmt.name]
         yield from self._matched([(node.fmt.name, node) for node in rounding], self._watch.rounded)
         yield from self._matched(self._graph.faults, self._watch.flagged)

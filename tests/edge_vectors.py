@@ -15,7 +15,7 @@ STEEP = dict(g1=2.0**-7, g2=2.0**-1, rho=lambda g: 1 / (1 + 4 * g), sigma=lambda
 
 
 def damper_tables(rng, fmt: Formats, tables: int) -> dict[str, np.ndarray]:
-    """A table such as a material has, the rest of random words."""
+    """Return one table like a material's, and others of random words."""
     segments = 1 << fmt.damper_index.width
     contents = random_record(rng, records.damper_word(fmt), (tables, segments))
     for name, word in damper_table(fmt, **STEEP).words.items():
@@ -59,7 +59,7 @@ def some(rng, n):
 
 
 def anything(rng, formats, fmt, n):
-    """Of every format anything; shifts that make something of a product, more often than not."""
+    """Return any integers of each format; most shifts are such that a product doesn't vanish."""
     values = {name: rng.integers(q.raw_min, q.raw_max, n, endpoint=True) for name, q in formats.items()}
     return values | shifts(rng, formats, n, 0.7)
 
@@ -69,7 +69,7 @@ def corners(rng, formats, fmt, n):
 
 
 def limits(rng, formats, fmt, n):
-    """Zero, powers of two and the ends of the formats, each with its neighbours."""
+    """Return zero, powers of two and the ends of the formats, each with its neighbours."""
     values = {name: near_powers(rng, q, n) for name, q in formats.items()}
     for axis in AXES[1:]:  # most edges along x, whose direction is exact
         along = rng.random(n) < 0.7
@@ -85,7 +85,7 @@ def near_powers(rng, q: Q, n):
 
 
 def shifts(rng, formats, n, part, low=-4, high=24):
-    """That part of the exponents is between ``low`` and ``high``, the others are anything."""
+    """Return exponents: the given part of them between ``low`` and ``high``, the others anywhere."""
     return {
         name: np.where(rng.random(n) < part, rng.integers(low, high, n), rng.integers(q.raw_min, q.raw_max, n))
         for name, q in formats.items()
@@ -94,7 +94,7 @@ def shifts(rng, formats, n, part, low=-4, high=24):
 
 
 def sensible(rng, formats, fmt, n):
-    """An edge of an object, in a material with a damper of any kind, in a stage of a step."""
+    """Return edges of an object, in materials with dampers of any kind, in any stage of a step."""
     stage = rng.integers(RK4.stages, size=n)
     values = {f"stage_{bit}": np.array([RK4.stage(s)[bit] for s in range(RK4.stages)])[stage] for bit in RK4.stage(0)}
 
@@ -140,7 +140,7 @@ def raw(x, q: Q):
 
 
 def coincide(rng, inputs, fmt, rows):
-    """Ends that are the same point, or a few steps of the finest position apart."""
+    """Put both ends at the same point, or a few of the finest steps apart."""
     for axis in AXES:
         apart = rng.integers(-2, 3, len(rows)) << rng.choice([0, 0, 0, 8, 14, 16], len(rows))
         end = inputs[f"i_x_{axis}"][rows] + apart
@@ -180,7 +180,7 @@ def beside(rng, values):
 
 
 def on_boundaries(rng, inputs, model, fmt, rows):
-    """|g| exactly at a threshold and |g| exactly at the edge of a segment, or one step of either beside it."""
+    """Put |g| exactly at a threshold or at the end of a segment, or one step beside it."""
     model, fineness = model(rows), inputs["material_fineness"][rows]
     first, second, place = np.split(np.arange(len(rows)), [len(rows) // 3, 2 * len(rows) // 3])
 

@@ -103,7 +103,7 @@ def numbers(values: dict[str, np.ndarray], formats, faults: Counter) -> dict[str
 
 @contextmanager
 def only_asked():
-    """Amaranth misses no component that is made in here and never built."""
+    """Suppress Amaranth's warning about components that are made in here and never built."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield
@@ -111,13 +111,13 @@ def only_asked():
 
 
 def refused(make, message: str):
-    """``make()`` raises ValueError with exactly this message."""
+    """Check that ``make()`` raises ValueError with exactly this message."""
     with only_asked(), pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         make()
 
 
 def core_to_ask(parameters) -> Core:
-    """A circuit that is only asked, never built, and not missed by Amaranth for that."""
+    """Return a circuit that is only inspected, without Amaranth's warning that it is never built."""
     core = Core(parameters)
     core._MustUse__used = True
     return core

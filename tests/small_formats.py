@@ -12,21 +12,21 @@ def small_formats(widths, int_bits) -> list[Q]:
 
 
 def every(q: Q) -> np.ndarray:
-    """Every integer of a format."""
+    """Return every integer of a format."""
     return np.arange(q.raw_min, q.raw_max + 1)
 
 
 def every_pair(a: Q, b: Q, faults=None) -> tuple[QArray, QArray]:
-    """Every pair of numbers of two formats."""
+    """Return every pair of numbers of two formats."""
     x, y = (grid.ravel() for grid in np.meshgrid(every(a), every(b)))
     return QArray(x, a, faults), QArray(y, b, faults)
 
 
 def outside(x: QArray) -> apytypes.APyFixedArray:
-    """The same numbers in apytypes, which knows signed formats only: an unsigned one gets a sign bit."""
+    """Return the same numbers in apytypes, which knows signed formats only: an unsigned one gets a sign bit."""
     return apytypes.APyFixedArray(x.raw.tolist(), x.fmt.int_bits + (not x.fmt.signed), x.fmt.frac_bits)
 
 
 def same(x: QArray, theirs: apytypes.APyFixedArray) -> bool:
-    """Whether the values are the same; at these widths float64 holds them."""
+    """Return whether the values are the same; at these widths float64 holds them."""
     return np.array_equal(x.to_float(), theirs.to_numpy())
