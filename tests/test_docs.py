@@ -71,10 +71,45 @@ def test_the_readme_links_to_it(path):
     assert path.name == "README.md" or f"](docs/{path.name})" in (ROOT / "README.md").read_text()
 
 
+def gone(path):
+    """Return the files and folders that a page names and that don't exist."""
+    named = re.findall(r"`((?:golden|hw|sim|scenes|tests|docs|constraints)/[\w./-]*)`", path.read_text())
+    return [name for name in named if not (ROOT / name).exists()]
+
+
 @every_page
 def test_files_and_folders_exist(path):
-    for name in re.findall(r"`((?:golden|hw|sim|scenes|tests|docs|constraints)/[\w./-]*)`", path.read_text()):
-        assert (ROOT / name).exists(), name
+    assert gone(path) == []
+
+
+ERRANDS = [
+    "A quantity's format",
+    "A preset",
+    "A damper law",
+    "A board",
+    "A device family",
+    "A simulator backend",
+    "A bus in front of the host port",
+    "A timing path that is too long",
+    "A report panel",
+    "A command",
+]
+
+
+def test_every_errand_names_its_files_and_its_tests():
+    """Files that exist are held by `test_files_and_folders_exist`."""
+    sections = re.split(r"^## (.*)$", text("changing"), flags=re.MULTILINE)[1:]
+    assert sections[::2] == ERRANDS
+    for errand, section in zip(sections[::2], sections[1::2], strict=True):
+        steps, _, checks = section.partition("Checked by")
+        assert re.search(r"^1\. ", steps, re.MULTILINE) and re.search(r"`(?:golden|hw|sim|constraints)/", steps), errand
+        assert re.search(r"`tests/test_\w+\.py`", checks), errand
+
+
+def test_a_file_that_is_gone_is_noticed(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("First `hw/parameters.py`, then `hw/nowhere.py` and `sim/nowhere/`.")
+    assert gone(page) == ["hw/nowhere.py", "sim/nowhere/"]
 
 
 @every_page
