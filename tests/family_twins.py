@@ -1,4 +1,4 @@
-"""The generic blocks and their twins of a family's primitives, simulated together by Verilator."""
+"""Generic blocks and their twins made of a family's primitives, simulated together by Verilator."""
 
 import ctypes
 from pathlib import Path
@@ -14,11 +14,11 @@ from sim.backends.verilated import library, opened
 
 SHIM = Path(__file__).with_name("twins.cpp")
 SLOT = 64
-"""Bits that the inputs of one block have, and its output."""
+"""Bits for the inputs of one block, and for its output."""
 
 
 class Blocks(wiring.Component):
-    """Blocks side by side: each has a slot of ``inputs``, its own ones behind one another, and one of ``outputs``."""
+    """Blocks side by side: each has a slot of ``inputs``, packed from the lowest bit, and a slot of ``outputs``."""
 
     def __init__(self, blocks):
         self._blocks = blocks
@@ -45,7 +45,7 @@ endmodule
 
 
 def run(blocks, inputs: list[dict[str, np.ndarray]], folder: Path, family: str = "ecp5"):
-    """A list of (what each block, what its twin put out) in every cycle, before the clock rises, as bits.
+    """Return the outputs of each block and of its twin in every cycle, before the rising clock edge, as bits.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from hw.sizes import SIZES
 
 @pytest.fixture
 def found(monkeypatch, tmp_path):
-    """What the tools find, to be changed, and the tools that were called. No tool runs, nothing is written to the
+    """The findings of the tools, to be changed, and the tools that were called. No tool runs, nothing is written to the
     checkout, and every board's clock is 100 MHz."""
     load = boards.load
 

@@ -1,4 +1,4 @@
-"""The boards' files: what each says, and one line for each mistake in one."""
+"""The boards' files: each is a board, and each mistake in one is a line."""
 
 import copy
 import json
@@ -16,7 +16,7 @@ DOCUMENT = tomllib.loads(TEXT)
 
 @pytest.fixture
 def refused(tmp_path):
-    """Expects that the text of a board's file is refused with exactly this message, after the file's name."""
+    """A function that expects exactly this message, after the file's name, for the text of a board's file."""
 
     def check(text: str, message: str):
         path = tmp_path / "mine.toml"

@@ -1,4 +1,4 @@
-"""python -m hw doctor: what is there and what is missing, with what to do; its exit code."""
+"""python -m hw doctor: its findings, the remedies it names, and its exit code."""
 
 import json
 import sys
@@ -43,14 +43,14 @@ def test_everything_is_there(machine, capsys):
     assert "ok   openFPGALoader  v1.1.1" in out
 
 
-def test_what_make_needs_is_missing(machine, capsys, monkeypatch):
+def test_a_missing_program_that_make_needs(machine, capsys, monkeypatch):
     monkeypatch.setattr(environment, "checked", lambda: [("a C++ compiler (c++)", "g++", False)])
     code, out = lines(capsys)
     assert (code, out[-1]) == (1, "1 things are missing that make needs")
     assert "NO   a C++ compiler (c++)  missing  install it (Debian: apt install g++)" in out
 
 
-def test_programs_are_looked_for_on_the_path(machine, capsys, monkeypatch, tmp_path):
+def test_programs_are_searched_on_the_path(machine, capsys, monkeypatch, tmp_path):
     monkeypatch.undo()
     monkeypatch.setattr(list_ports, "comports", list)
     monkeypatch.setenv("PATH", str(tmp_path))
@@ -60,7 +60,7 @@ def test_programs_are_looked_for_on_the_path(machine, capsys, monkeypatch, tmp_p
         assert f"NO   {what}  missing  install it (Debian: apt install {package})" in out
 
 
-def test_a_package_that_is_missing_or_another(machine, capsys, monkeypatch):
+def test_a_package_that_is_missing_or_of_another_version(machine, capsys, monkeypatch):
     there = doctor.version
 
     def version(name):
@@ -98,7 +98,7 @@ def test_a_browser_is_needed_by_some_tests_alone(machine, capsys, monkeypatch):
     assert "--   a browser  missing  for the tests of the report: install it (Debian: apt install browser)" in out
 
 
-def test_serial_ports_and_whether_they_may_be_used(machine, capsys, monkeypatch, tmp_path):
+def test_serial_ports_and_the_permission_to_use_them(machine, capsys, monkeypatch, tmp_path):
     mine, not_mine = tmp_path / "ttyUSB0", "/dev/ttyUSB9"
     mine.touch()
     ports = [SimpleNamespace(device=str(device), description="FT231X") for device in (mine, not_mine)]

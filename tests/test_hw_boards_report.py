@@ -1,4 +1,4 @@
-"""What timing makes of a report of place and route: resources, clock, critical path, names."""
+"""Reports of place and route: resources, clock, critical path, names."""
 
 import pytest
 from board_objects import STATISTICS, STEPS, TIMED, reported

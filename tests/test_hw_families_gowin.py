@@ -21,7 +21,7 @@ CYCLES = 20_000
 
 
 class Recorder:
-    """Takes down what multipliers a circuit asks for, and offers none."""
+    """Record the multipliers that a circuit asks for, and offer none."""
 
     def __init__(self):
         self.multipliers = set()

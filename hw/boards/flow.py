@@ -24,11 +24,11 @@ from hw.sizes import sizes_of
 SMALLEST = {"lanes": 1, "updates": 1, "nodes": 16, "edges": 16, "materials": 2, "tables": 1, "axes": 3}
 """Sizes of a small circuit whose resources are published."""
 NAME = "rheogate"
-"""The files of a bitstream before their endings."""
+"""Name of a bitstream's files, before their endings."""
 SEED = 1
 """The seed with which bitstreams are placed."""
-Report = Callable[[str], None]
-"""Told what is done next."""
+Progress = Callable[[str], None]
+"""A function that is called with each step as it begins."""
 
 
 def time_circuit(
@@ -37,7 +37,7 @@ def time_circuit(
     parameters: Parameters,
     seeds: list[int],
     folder: Path,
-    report_progress: Report,
+    report_progress: Progress,
     jobs: int = 1,
 ) -> Timing:
     """Synthesise the circuit in its frame and place it with each seed, ``jobs`` at a time.
@@ -99,7 +99,7 @@ def build_bitstream(
     board: Board,
     parameters: Parameters,
     tools: Tools,
-    report_progress: Report,
+    report_progress: Progress,
     *,
     allow_missed: bool = False,
 ) -> Build:

@@ -28,7 +28,7 @@ class Smallest(Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 class Result(Smallest, forbid_unknown_fields=True, kw_only=True):
-    """What timing and bitstream share."""
+    """The part that timing and bitstream share."""
 
     PUBLISHED: ClassVar[Path]
     """The folder of the results that are published, a file for each board."""

@@ -36,7 +36,7 @@ class Tools:
     folder : Path
         Where all files of the design are.
     name, top : str
-        Of its files and of its top module.
+        Names of its files and of its top module.
     pinned : bool
         Whether the top's ports are the board's pins. Otherwise place and route chooses the pins.
     """

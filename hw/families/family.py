@@ -44,7 +44,7 @@ class Blocks:
 
 @dataclass(frozen=True)
 class Family:
-    """What the project knows about a family of devices.
+    """All that the project knows about a family of devices.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Family:
 
     @property
     def timed(self) -> bool:
-        """Whether multipliers and block RAMs are timed, and so the clock is known."""
+        """True if the limits of the hard blocks are known, and so the clock that the circuit can have."""
         return bool(self.limits_mhz)
 
     @property

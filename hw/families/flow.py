@@ -31,7 +31,7 @@ class Design(NamedTuple):
 
 
 class Flow(ABC):
-    """What the tools of a family are told. `hw.boards.tools` runs them; all synthesis is Yosys'.
+    """The commands of a family's tools, which `hw.boards.tools` runs. Yosys does all synthesis.
 
     Attributes
     ----------

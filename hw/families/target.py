@@ -27,8 +27,8 @@ class Target(Protocol):
     oscillator_mhz: float
     clock_mhz: float
     no_wide_luts: bool
-    """Whether lookup tables of five inputs or more are avoided: they are made of several that must be adjacent, and a
-    device that is nearly full has too few adjacent sites left."""
+    """Avoid lookup tables of five inputs or more: they are made of several that must be adjacent, and a device that is
+    nearly full has too few adjacent sites left."""
 
     @property
     def ports(self) -> Mapping[str, Pin]:
