@@ -69,12 +69,16 @@ def memory_ports(m):
 def surely_named(code) -> frozenset[int]:
     """Return the offsets of the calls whose value is assigned to one name, alone: every interpreter finds that name."""
     found = [i for i in dis.get_instructions(code) if i.opname not in ("CACHE", "EXTENDED_ARG", "RESUME")]
-    stores = [instruction.opname.startswith("STORE") for instruction in found] + [False, False]
-    return frozenset(
-        instruction.offset
-        for n, instruction in enumerate(found)
-        if instruction.opname.startswith("CALL") and stores[n + 1] and not stores[n + 2]
-    )
+
+    def stored(n: int) -> int:
+        """Return the number of instructions that store a value here, in a name or an attribute."""
+        names = [instruction.opname for instruction in found[n : n + 2]] + ["", ""]
+        if names[0].startswith("STORE"):
+            return 1
+        return 2 * (names[0] in ("LOAD_FAST", "LOAD_DEREF") and names[1] == "STORE_ATTR")
+
+    calls = [n for n, instruction in enumerate(found) if instruction.opname.startswith("CALL")]
+    return frozenset(found[n].offset for n in calls if stored(n + 1) and not stored(n + 1 + stored(n + 1)))
 
 
 @pytest.fixture

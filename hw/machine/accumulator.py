@@ -85,12 +85,13 @@ class Accumulator(wiring.Component):
         m = Module()
         # The force under way: k cycles after its announcement
         now, written = ANNOUNCED, ANNOUNCED + WRITTEN - 1
-        valid = self._line(m, self.valid, "valid", written, reset=self.reset)
-        node, first = self._line(m, self.node, "node", written), self._line(m, self.first, "first", now - 2)
+        recent = range(1, READ_LATENCY + WRITTEN + 1)  # ages of sums that the word that was read lacks
+        longest = max(written, now - 3 + recent[-1])
+        valid = self._line(m, self.valid, "valid", longest, reset=self.reset)
+        node, first = self._line(m, self.node, "node", longest), self._line(m, self.first, "first", now - 2)
 
-        # At ANNOUNCED it meets its force. The word that was read lacks the sums of the last few cycles: the latest of
-        # them on the same node counts. It is found beforehand; all but the sum of the cycle before are already there
-        recent = range(1, READ_LATENCY + WRITTEN + 1)
+        # At ANNOUNCED it meets its force. The latest of the recent sums on the same node counts, which is found before;
+        # all but the sum of the cycle before are already there
         same = [Signal(name=f"same_{age}", reset_less=True) for age in recent]
         for age, bit in zip(recent, same, strict=True):
             m.d.sync += bit.eq(valid[now - 3 + age] & (node[now - 3 + age] == node[now - 3]))
