@@ -9,7 +9,7 @@ from amaranth.lib.wiring import In, Out
 from hw_objects import only_asked, simulate
 
 from hw.emit.verilog import convert
-from hw.pipeline.delay import RING_LEAST, RING_MOST, DelayLines, Ring
+from hw.pipeline.delay import LONGEST_RING, SHORTEST_RING, DelayLines, Ring
 
 
 class Tapped(wiring.Component):
@@ -32,12 +32,12 @@ class Tapped(wiring.Component):
     "taps",
     [
         (0, 1, 2),
-        (RING_LEAST - 1,),
-        (RING_LEAST,),
-        (RING_MOST,),
-        (RING_MOST + 1,),
+        (SHORTEST_RING - 1,),
+        (SHORTEST_RING,),
+        (LONGEST_RING,),
+        (LONGEST_RING + 1,),
         (40, 3, 12, 41, 61),
-        (2 * RING_MOST,),
+        (2 * LONGEST_RING,),
     ],
 )
 def test_taps(taps, reset, wire, rng):
@@ -60,12 +60,12 @@ def test_taps(taps, reset, wire, rng):
 
 @pytest.mark.parametrize("wire", [False, True])
 def test_a_register_takes_what_comes_from_logic_before_a_ring_does(wire):
-    verilog = convert(Tapped((RING_LEAST + 1,), wire=wire), "tapped")
+    verilog = convert(Tapped((SHORTEST_RING + 1,), wire=wire), "tapped")
     taken = re.search(r"_ring6 \(.*?\.i\((\w+)\)", verilog, re.DOTALL)[1]
     assert (f"{taken} <= i;" in verilog) == wire
 
 
-@pytest.mark.parametrize("cycles", [2, RING_MOST + 1])
+@pytest.mark.parametrize("cycles", [2, LONGEST_RING + 1])
 def test_a_ring_of_an_impossible_length_is_refused(cycles):
-    with only_asked(), pytest.raises(ValueError, match=f"^cycles must be 3 to {RING_MOST}, not {cycles}$"):
+    with only_asked(), pytest.raises(ValueError, match=f"^cycles must be 3 to {LONGEST_RING}, not {cycles}$"):
         Ring(width=1, cycles=cycles)

@@ -1,17 +1,21 @@
 """Every operation of the datapath as hardware gives the integers and the faults of `golden.numbers.qarray`."""
 
 from collections import Counter
+from contextlib import suppress
 
 import numpy as np
 import pytest
-from hw_objects import Piped, stream
+from amaranth.hdl import Signal
+from hw_objects import Piped, simulate, stream
 from integer_objects import random_raw
 
 from golden.numbers.block import normalise
 from golden.numbers.graph import Graph, Operation
 from golden.numbers.qarray import QArray
 from golden.numbers.qformat import BIT, Q, unsigned
+from hw.pipeline import pipe
 from hw.pipeline.cost import Cost
+from hw.pipeline.operations import STEPS, shape, shift_count, step_count
 
 COSTS = {
     "registers as usual": Cost(),
@@ -189,3 +193,50 @@ def test_rounding_and_shifting_exhaustively_at_small_widths(source, target):
     got = stream(dut, {"a": raw, "b": shift}, list(expected))
     for label, number in expected.items():
         assert got[label] == number.raw.tolist(), label
+
+
+class NoWires:
+    """Values of an operation that go nowhere."""
+
+    def __call__(self, value):
+        return Signal(value.shape())
+
+    def shifted(self, x, times, places, *, left):
+        return Signal(x.shape())
+
+
+SUMS = {f"sum of {terms}": ([S] * terms, lambda *x: {"out": x[0].total(x)}) for terms in (1, 2, 3, 4, 9, 10)}
+
+
+@pytest.mark.parametrize("name", [*OPERATIONS, *SUMS])
+def test_the_number_of_steps_is_how_often_a_function_yields(name):
+    formats, operation = (OPERATIONS | SUMS)[name]
+    for x in graph_of(operation, formats).operations:
+        if x.kind in STEPS:
+            operands = [Signal(shape(operand.fmt)) for operand in x.operands]
+            if x.kind == "shift_right":
+                operands[1] = shift_count(x, operands[1])
+            steps = STEPS[x.kind](NoWires(), x, *operands)
+            values, count = next(steps), 1
+            with suppress(StopIteration):
+                while True:
+                    values, count = steps.send(values), count + 1
+            assert count == step_count(x)
+
+
+@pytest.mark.parametrize("cycles", [0, 1, 3])
+def test_the_latency_of_a_fault_drives_its_registers(cycles, monkeypatch, rng):
+    monkeypatch.setattr(pipe, "FAULT_LATENCY", cycles)
+    formats, operation = OPERATIONS["round, saturate"]
+    dut = Piped(graph_of(operation, formats), Cost())
+    latency, seen = dut.latency, []
+
+    async def bench(ctx):
+        for cycle in range(10):
+            ctx.set(dut.valid, cycle == 2)
+            ctx.set(dut.in0, formats[0].raw_max)
+            seen.append(ctx.get(dut.fault))
+            await ctx.tick()
+
+    simulate(dut, bench)
+    assert seen == [int(cycle == 2 + latency + cycles) for cycle in range(10)]

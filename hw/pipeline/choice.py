@@ -1,4 +1,4 @@
-"""One of many words, four at a time, with a register behind each choice."""
+"""A pipelined multiplexer: four words at a time, with a register after each choice."""
 
 from amaranth.hdl import Array, Module, Signal
 
@@ -9,13 +9,13 @@ WAYS = 1 << BITS
 
 
 def choose(m: Module, lines: DelayLines, words: list, index, *, cycles: int, name: str, ahead: int = 0) -> Signal:
-    """``words[index]``, ``cycles`` after the words and ``ahead + cycles`` after the index. An index beyond the words
-    may give any of them.
+    """Return ``words[index]``, ``cycles`` after the words and ``ahead + cycles`` after the index. An index that is too
+    large gives any of the words.
 
     Raises
     ------
     ValueError
-        If there are more words than can be chosen from in so many cycles.
+        If there are too many words for so many cycles.
     """
     if len(words) > WAYS**cycles:
         raise ValueError(f"words must be at most {WAYS**cycles} to choose from in {cycles} cycles, not {len(words)}")

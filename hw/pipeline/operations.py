@@ -24,16 +24,17 @@ def negative(x: Value) -> Value:
 
 
 def either(bit: Value, yes: Value, no: Value) -> Value:
-    """``Mux``, which is nothing where the bit is known to be 0."""
+    """Return ``Mux(bit, yes, no)``, or just ``no`` if the bit is the constant 0."""
     return no if never(bit) else Mux(bit, yes, no)
 
 
 def never(bit: Value) -> bool:
+    """Return whether a bit is the constant 0."""
     return isinstance(bit, Const) and not bit.value
 
 
 def aligned(*operands):
-    """Values whose lowest bits mean the same, from (value, format) pairs."""
+    """Return values whose LSBs have the same weight, from (value, format) pairs."""
     frac = max(q.frac_bits for _, q in operands)
     return [value << frac - q.frac_bits for value, q in operands]
 
@@ -49,7 +50,7 @@ def add(wire, operation, a, b):
 
 
 def total(wire, operation, *terms):
-    """Three by three: synthesis makes one carry chain of each three."""
+    """Add three terms at a time: synthesis makes one carry chain of them."""
     terms = aligned(*((x, operand.fmt) for x, operand in zip(terms, operation.operands, strict=True)))
     while len(terms) > 3:
         terms = yield tuple(wire(sum(terms[first : first + 3])) for first in range(0, len(terms), 3))
@@ -76,7 +77,7 @@ def absolute(wire, operation, a):
 
 
 def lead(wire, operation, *vector):
-    """Leading zeros of the OR of all magnitudes, first of groups of bits."""
+    """Count the leading zeros of the OR of all magnitudes: first which groups of bits are 0, then within a group."""
     magnitude = Const(0)
     for x in vector:
         magnitude |= size(x)
@@ -87,7 +88,7 @@ def lead(wire, operation, *vector):
 
 
 def size(x: Value) -> Value:
-    """What has the leading zeros of a number's size: its bits, those of a negative number inverted."""
+    """Return bits with as many leading zeros as the magnitude of ``x``: a negative number is inverted."""
     return (x[:-1] ^ x[-1].replicate(len(x) - 1)) if x.shape().signed else x
 
 
@@ -96,8 +97,8 @@ GROUP = 4
 
 
 def _leading_zeros(groups) -> Value:
-    """Of (whether a bit is 1, bits), the uppermost first, as a tree: the count of the upper half of the groups, or its
-    bits and the count of the lower."""
+    """Count the leading zeros of (some bit is 1, bits) groups, highest group first, as a tree: the count of the upper
+    half, or, if that is 0, its width and the count of the lower half."""
     if len(groups) == 1:
         ((_, bits),) = groups
         zeros = Const(len(bits))
@@ -111,7 +112,7 @@ def _leading_zeros(groups) -> Value:
 
 
 def shift_left(wire, operation, x, count):
-    """Bits that leave at the top are redundant (`lead`)."""
+    """Shift to the left; the bits lost at the top are redundant (`lead`)."""
     low = len(count) // 4 * 2
     x = _shifted(wire, x, count, low, left=True)
     x, count = yield x, count[:low]
@@ -119,7 +120,7 @@ def shift_left(wire, operation, x, count):
 
 
 def _shifted(wire, x, count, low=0, *, left):
-    """By the count's bits from ``low`` on, two at a time."""
+    """Shift by bits ``low`` and up of the count, two bits at a time."""
     stages = [slice(max(low, bit - 2), bit) for bit in range(len(count), low, -2)]
     for bits in stages:
         x = wire.shifted(x, count[bits], 1 << bits.start, left=left)
@@ -127,7 +128,7 @@ def _shifted(wire, x, count, low=0, *, left):
 
 
 def round_half_up(wire, operation, x):
-    """Operand's fraction bits beyond the format's are dropped, then the result saturates; second value: the fault."""
+    """Round to the format's fraction bits and saturate. The second value is the fault."""
     source, target = operation.operands[0].fmt, operation.fmt
     drop = source.frac_bits - target.frac_bits
     if drop <= 0:
@@ -138,7 +139,7 @@ def round_half_up(wire, operation, x):
 
 
 def shift_right(wire, operation, x, count):
-    """Rounds, or cuts, and saturates ``x * 2**-count``, the count as `shift_count` gives it; second value: the
+    """Round, or cut, and saturate ``x * 2**-count``; ``count`` comes from `shift_count`. The second value is the
     fault."""
     target = operation.fmt
     drop = max(0, operation.operands[0].fmt.frac_bits - target.frac_bits)
@@ -160,8 +161,10 @@ def shift_right(wire, operation, x, count):
 
 
 def shift_count(operation, count):
-    """What a right shift makes of its count, which may be known earlier than the number: how far, in bits enough to
-    leave nothing of any number, and whether to the left."""
+    """Prepare the count of a right shift, which may be known earlier than the number.
+
+    Returns the distance, in just enough bits to shift any number to nothing, and above it the bit "to the left".
+    """
     source = operation.operands[0].fmt
     bits = (source.width + _grown(operation)).bit_length()
     left = negative(count)
@@ -172,18 +175,21 @@ def shift_count(operation, count):
 
 
 def _grown(operation) -> int:
-    """Places that a number gets before its right shift."""
+    """Return the fraction bits added to a number before its right shift."""
     return _rounding_bits(operation) + max(0, operation.fmt.frac_bits - operation.operands[0].fmt.frac_bits)
 
 
 def _rounding_bits(operation) -> int:
-    """Bits that a shifted number has more than its result, to round with."""
+    """Return the fraction bits that a shifted number has more than its result, to round with."""
     return int(operation.detail != "cut")
 
 
 def _saturate(target: Q, rounded, floor):
-    """(result, fault): see `golden.numbers.qarray.QArray.to`. What is below the range is its end whether it is rounded
-    up or not, and a number within it can only be rounded to its upper end: so the carries are awaited but once."""
+    """Return (result, fault) as `golden.numbers.qarray.QArray.to` defines them.
+
+    A number below the range saturates whether it is rounded up or not, and a number within can overflow upwards only.
+    So only one comparison waits for the carry of the rounding.
+    """
     above, below = _above(target, floor), _below(target, floor)
     over = Const(0)
     if rounded is not floor and not never(_above(target, rounded)):
@@ -194,19 +200,19 @@ def _saturate(target: Q, rounded, floor):
 
 
 def any_of(*bits: Value) -> Value:
-    """``|``, without what is known to be 0."""
+    """Return the OR of these bits, without those that are the constant 0."""
     return functools.reduce(operator.or_, [bit for bit in bits if not never(bit)] or [Const(0)])
 
 
 def _above(target: Q, value: Value) -> Value:
-    """Whether ``value`` is above the target's range: a positive number with one of the bits beyond."""
+    """Return whether ``value`` is above the target's range: it is positive and has a bit beyond the target's."""
     magnitude = len(value) - value.shape().signed
     beyond = value[min(target.width - target.signed, magnitude) : magnitude]
     return ~negative(value) & beyond.any() if len(beyond) else Const(0)
 
 
 def _below(target: Q, value: Value) -> Value:
-    """Whether ``value`` is below the target's range: a negative number without one of the bits beyond."""
+    """Return whether ``value`` is below the target's range: it is negative and lacks a bit beyond the target's."""
     if not target.signed:
         return negative(value)
     beyond = value[min(target.width, len(value)) - 1 : -1]
@@ -227,15 +233,19 @@ STEPS = {
 }
 
 
+STEP_COUNTS = {"lead": 2, "shift_left": 2, "shift_right": 3}
+"""How often these functions yield; a sum yields once for each addition of three terms, all others once."""
+
+
 def step_count(operation) -> int:
-    """Steps of a operation's operation."""
+    """Return the number of steps of an operation."""
     if operation.kind == "sum":
         return next(steps for steps in itertools.count(1) if 3**steps >= len(operation.operands))
-    return {"lead": 2, "shift_left": 2, "shift_right": 3}.get(operation.kind, 1)
+    return STEP_COUNTS.get(operation.kind, 1)
 
 
 def field(operation, x):
-    """Wires only: bits of the operand, or the operand as it is in another format."""
+    """Return bits of the operand, or the operand itself in another format: wires only."""
     if operation.kind == "part":
         _, word = operation.operands[0].detail
         return word.field(operation.detail, x)

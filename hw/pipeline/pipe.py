@@ -1,4 +1,4 @@
-"""From a datapath's graph (`golden.numbers.graph`) to a pipeline: its registers follow from the schedule."""
+"""The pipeline of a graph (`golden.numbers.graph`): its registers follow from the schedule."""
 
 import itertools
 
@@ -14,30 +14,29 @@ from hw.pipeline.operations import STEPS, field, never, shape, shift_count, size
 from hw.pipeline.schedule import WIRES, Schedule, before_wires
 
 FAULT_LATENCY = 1
-"""Cycles from a value to its fault."""
+"""Registers from a value to its fault."""
 
 
 class Pipe:
-    """The registers and multipliers of a scheduled graph, written into a module; `build` ends it.
+    """The registers and multipliers of a scheduled graph, added to a module; call `build` last.
 
     Parameters
     ----------
     m : Module
     schedule : Schedule
     inputs : dict of str to Value
-        Each in its cycle: 0, or ``schedule.arrival``.
+        Each in its cycle: 0, or that in ``schedule.arrival``.
     valid : Value
-        1 in cycle 0 of an item: gates its faults.
+        1 in cycle 0 of an item; without it an item reports no faults.
     tables : dict of str to callable
         ``tables[name](address values)`` gives a table's word ``schedule.cost.read`` cycles later.
-
-    reset : Value
-        Clears what is valid and the faults, instead of the clock domain's reset.
+    reset : Value, optional
+        Clears valid bits and faults, instead of the reset of the clock domain.
 
     Attributes
     ----------
     faults : dict of str to Value
-        1 `FAULT_LATENCY` cycles after a fault of that name has happened.
+        1 `FAULT_LATENCY` cycles after a fault of that name.
     """
 
     def __init__(self, m: Module, schedule: Schedule, inputs, valid, tables=None, reset=None):
@@ -45,7 +44,7 @@ class Pipe:
         self._delays, self._results = DelayLines(m, reset), {}
         self._valid, self._reset = valid, reset
         self._faults: dict[str, list] = {}
-        # The terms of a sum come from all over the device, and it has more to do in its cycle than others
+        # The terms of a sum come from all over the device, so their multipliers end in a register near the sum
         sums = [operation for operation in schedule.graph.operations if operation.kind == "sum"]
         self._summed = {before_wires(term) for operation in sums for term in operation.operands}
         for operation in schedule.graph.operations:
@@ -56,20 +55,20 @@ class Pipe:
         self.faults = {name: Cat(*bits).any() for name, bits in self._faults.items()}
 
     def output(self, name: str, cycle: int | None = None):
-        """The value of an output in its cycle, or delayed to a later one."""
+        """Return the value of an output in its cycle, or delayed to a later one."""
         operation = self._schedule.graph.outputs[name]
         return self.at(operation, self._schedule.cycle[operation] if cycle is None else cycle)
 
     def build(self):
-        """The delay lines, when all outputs have been asked for."""
+        """Make the delay lines, once all outputs have been asked for."""
         self._delays.build()
 
     def valid(self, cycle: int):
-        """1 when the item that is in ``cycle`` is a valid one."""
+        """Return a bit that is 1 when the item in ``cycle`` is valid."""
         return self._delays.later(self._valid, cycle, name="valid", reset=True)
 
     def at(self, operation: Operation, cycle: int):
-        """A operation's value in ``cycle``; delay lines are shared."""
+        """Return an operation's value in ``cycle``; delay lines are shared."""
         if operation.kind == "const":
             return Const(operation.detail, shape(operation.fmt))
         if operation.kind in WIRES:
@@ -114,8 +113,8 @@ class Pipe:
         return gather.o
 
     def _operand(self, operation, number, start):
-        """In the operation's first cycle. A count is made ready for its shift, with as many registers behind it, two at
-        most, as it is known before."""
+        """Return an operand in the operation's first cycle. The count of a right shift is prepared up to two cycles
+        earlier, if it is known then, and registered."""
         if (operation.kind, number) != ("shift_right", 1):
             return self.at(operation.operands[number], start)
         count = operation.operands[1]
@@ -128,7 +127,7 @@ class Pipe:
         return self._delays.later(register, before - 1)
 
     def _steps(self, operation, operands):
-        """The operation's values, the registers that it costs behind the last of its steps."""
+        """Return the operation's values. The registers that it costs follow its last steps."""
         count, cost = step_count(operation), self._schedule.cycle[operation] - self._schedule.start[operation]
         steps = STEPS[operation.kind](_Wires(self._m, operation.name), operation, *operands)
         values = next(steps)
@@ -136,7 +135,7 @@ class Pipe:
             if count - step < cost:
                 values = self._register([f"{operation.name}_s{step}_{n}" for n in range(len(values))], values)
             values = steps.send(values)
-        if not operation.fmt.name:  # saturates without a word
+        if not operation.fmt.name:  # a saturation is no fault
             values = values[:1]
         names = [operation.name, f"{operation.name}_fault"][: len(values)]
         result = Signal(shape(operation.fmt), name=operation.name, reset_less=True)
@@ -160,14 +159,20 @@ class Pipe:
     def _report(self, name, bit, cycle):
         reports = self._faults.setdefault(name, [])
         if not never(bit):
-            label, local = f"{name.replace(' ', '_')}_reported_{len(reports)}", self._reset is not None
-            reports.append(Signal(name=label, reset_less=local))
-            fault = bit & self.valid(cycle)
-            self._m.d.sync += reports[-1].eq(Mux(self._reset, 0, fault) if local else fault)
+            label, fault = f"{name.replace(' ', '_')}_reported_{len(reports)}", bit & self.valid(cycle)
+            reports.append(self._registered_fault(label, fault))
+
+    def _registered_fault(self, label, fault):
+        local = self._reset is not None
+        for number in range(FAULT_LATENCY):
+            register = Signal(name=f"{label}_d{number}" if number else label, reset_less=local)
+            self._m.d.sync += register.eq(Mux(self._reset, 0, fault) if local else fault)
+            fault = register
+        return fault
 
 
 class _Wires:
-    """Values of an operation that get a signal of their own: see `hw.pipeline.operations`."""
+    """Signals and shift stages for the values of an operation (`hw.pipeline.operations`)."""
 
     def __init__(self, m: Module, name: str):
         self._m, self._name, self._numbers = m, name, itertools.count(1)
