@@ -22,6 +22,7 @@ from sim.backends.link.board import Board
 from sim.backends.machine import ClockedMachine, Machine
 from sim.backends.native import NativeMachine
 from sim.backends.registry import BACKENDS
+from sim.backends.rtl import RtlBackend
 from sim.backends.simulated_circuit import SimulatedCircuit
 from sim.compare import compare
 from sim.encode.encode import encode
@@ -125,9 +126,14 @@ def test_a_backend_that_is_compared_takes_part_in_a_comparison(monkeypatch):
     class Compared(Numpy):
         compared = True
 
-    for name in ("rtl", "fixed"):
-        monkeypatch.delitem(BACKENDS, name)
-    monkeypatch.setitem(BACKENDS, Compared.name, Compared)
+    class Fixed(FixedBackend):
+        compared = False
+
+    class Rtl(RtlBackend):
+        compared = False
+
+    for backend in (Compared, Fixed, Rtl):
+        monkeypatch.setitem(BACKENDS, backend.name, backend)
     entry = compare(block(steps=(10, 5, 5))).entry()
     assert entry["backends"] == ["float", "numpy"] and entry["saturations"] == 0
 
