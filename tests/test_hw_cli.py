@@ -132,7 +132,7 @@ def test_other_versions_of_the_tools_write_again(emitted, out, monkeypatch):
 
 
 def test_other_sources_write_again(emitted, out, monkeypatch, tmp_path):
-    """Of both packages, whether changed, added, renamed or removed."""
+    """Sources of both packages count, whether changed, added, renamed or removed."""
     checkout = tmp_path / "checkout"
     for path in ("golden/datapath/edge.py", "hw/machine/core.py", "hw/blocks/memory.py"):
         (checkout / path).parent.mkdir(parents=True, exist_ok=True)

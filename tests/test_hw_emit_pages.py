@@ -1,4 +1,4 @@
-"""What is written for drivers in other languages: the header compiles, and says what the Python table says."""
+"""The files for drivers in other languages: the header compiles, and says what the Python table says."""
 
 import json
 import subprocess

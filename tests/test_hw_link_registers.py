@@ -21,7 +21,7 @@ def register(link):
 
 
 def counted(answer) -> dict[str, int]:
-    """What is not 0, but for good frames."""
+    """Return the counters that are not 0, except good frames."""
     values = dict(zip(Link, ITEMS.split(answer.payload)[1:], strict=True))
     return {link.name: value for link, value in values.items() if value and link != Link.GOOD_FRAMES}
 

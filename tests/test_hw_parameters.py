@@ -1,4 +1,4 @@
-"""What a circuit may be: each impossible one is refused by name, the largest one fits its records and addresses."""
+"""The circuits that can be made: impossible ones are refused by name, the largest fits its records and addresses."""
 
 from functools import partial
 

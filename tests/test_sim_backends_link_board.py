@@ -37,7 +37,7 @@ def control(register):
 
 
 def runs(scene, service, folder) -> tuple:
-    """What ``run`` writes of a scene on the board and on the simulated circuit."""
+    """Return what ``run`` writes of a scene on the board and on the simulated circuit."""
     out = [folder / name for name in ("board", "rtl")]
     assert main(["run", str(scene), "--backend", "board", "--port", service.url, "--out", str(out[0])]) == 0
     assert main(["run", str(scene), "--backend", "rtl", "--lanes", "1", "--out", str(out[1])]) == 0

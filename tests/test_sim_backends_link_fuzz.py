@@ -30,7 +30,7 @@ WORDS = st.dictionaries(st.sampled_from(SPARE), st.integers(0, (1 << 36) - 1), m
 
 
 class Line(NoisyLine):
-    """Of which both ways may be cut."""
+    """A line of which both directions may be cut."""
 
     cut = False
 

@@ -25,7 +25,7 @@ def heads(payload):
 
 
 def pairs(rng):
-    """What loads an object, and single words anywhere."""
+    """Return the words that load an object, and single words anywhere."""
     image = random_image(rng, nodes=12, edges=16, materials=2, tables=1)
     program = Program(image, Parameters(lanes=2, nodes=16, edges=16, materials=2, tables=1))
     alone = [(int(a), int(w)) for a, w in zip(rng.integers(0, 1 << 20, 50), rng.integers(0, 1 << 36, 50), strict=True)]

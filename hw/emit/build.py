@@ -64,7 +64,7 @@ def key_of(parameters: Parameters) -> str:
 
 
 def _fresh(folder: Path, key: str) -> bool:
-    """Whether both files are there, unchanged since they were made from what ``key`` stands for."""
+    """Return whether both files are there, unchanged since they were made from what ``key`` stands for."""
     try:
         contents = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
         text = (folder / VERILOG).read_text(encoding="utf-8")

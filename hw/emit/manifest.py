@@ -1,4 +1,4 @@
-"""What goes with the Verilog: everything that a driver, or a reader, has to know about this very circuit."""
+"""The manifest beside the Verilog: everything that a driver, or a reader, has to know about this circuit."""
 
 import hashlib
 
@@ -55,7 +55,7 @@ def digest(text: str) -> str:
 
 
 def own_digest(contents: dict) -> str:
-    """Of the manifest without its own hash, as `dump` writes it."""
+    """Return the hash of the manifest without its own hash, as `dump` writes it."""
     return digest(dump({name: value for name, value in contents.items() if name != "sha256"}))
 
 

@@ -1,4 +1,4 @@
-"""What a driver has to know about a circuit: one description for manifest, C header, page and the link's key."""
+"""The description of a circuit for its drivers: one for manifest, C header, page and the link's key."""
 
 import hashlib
 import json
@@ -43,7 +43,7 @@ def description(p: Parameters) -> dict:
 
 
 def key(p: Parameters) -> bytes:
-    """What the CRC of a frame begins with: another description, another key."""
+    """Return the bytes that the CRC of a frame begins with: another description has another key."""
     return hashlib.sha256(dump(description(p)).encode()).digest()[:KEY_BYTES]
 
 

@@ -1,4 +1,4 @@
-"""What goes over the line: frames, ``00 | COBS(header, payload, CRC-32) | 00``.
+"""The frames that go over the line, ``00 | COBS(header, payload, CRC-32) | 00``.
 
 The header is type, seq, status, bytes of an item (0 in commands) and the payload's length, two bytes, lowest first. The
 CRC is that of Ethernet and zlib over the key, which is not sent, header and payload: a circuit takes no frame of a host

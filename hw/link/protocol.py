@@ -38,7 +38,7 @@ OPERATION_TEXT = {
 
 
 class Kind(IntEnum):
-    """Of a segment."""
+    """Kinds of segments."""
 
     READ = 0
     WRITE = 1
@@ -67,7 +67,7 @@ COUNT_MOST = HEAD["count"].raw_max
 
 
 class Status(IntEnum):
-    """Of an answer: the lower half of its status byte."""
+    """The status of an answer: the lower half of its status byte."""
 
     DONE = 0
     REFUSED = 1

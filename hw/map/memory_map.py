@@ -53,7 +53,7 @@ class Map:
         }[region]
 
     def fields(self, region: Region, word: str) -> Record:
-        """What a word holds, lowest bits first."""
+        """Return the fields of a word, lowest bits first."""
         fmt, tables = self.parameters.formats, self.parameters.tables
         if region == Region.CONTROL:
             return Record({"value": unsigned(fmt.state, 0)})

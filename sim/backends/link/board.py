@@ -102,12 +102,12 @@ class Board:
                     raise LinkError("the circuit must hold what it was sent, but the CRC of its memories differs")
 
     def run(self, cycles: int = 0) -> bool:
-        """Whether a run goes on. Real circuits count their cycles themselves."""
+        """Return whether a run goes on. Real circuits count their cycles themselves."""
         (answer,) = self.session.commands([(Operation.ACCESS, b"")])
         return bool(self._good(answer).status & BUSY)
 
     def wait(self):
-        """Until the run is over."""
+        """Wait until the run is over."""
         while self.run():
             sleep(POLL)
 
@@ -118,7 +118,7 @@ class Board:
             self.wait()
 
     def exchange(self, payloads: Iterable[bytes]) -> Iterator[list[int]]:
-        """What segments read, each payload between two steps of a run that goes on."""
+        """Yield the words that segments read, each payload between two steps of a run that goes on."""
         return self._ask(payloads, Operation.EXCHANGE)
 
     def counters(self) -> dict[str, int]:

@@ -1,4 +1,4 @@
-"""What can go wrong between host and circuit, each with a name of its own."""
+"""Errors between host and circuit, each with a name of its own."""
 
 from golden.support.errors import InputError
 

@@ -36,7 +36,7 @@ class SerialLine:
         self._checked(self._port.write, data)
 
     def read(self, seconds: float) -> bytes:
-        """What has come, waiting for the first byte at most so long."""
+        """Return the bytes that have come; wait for the first one for at most ``seconds``."""
         self._port.timeout = seconds
         first = self._checked(self._port.read, 1)
         if not first:

@@ -68,7 +68,7 @@ class Live:
         return x * units.size + units.centre, force * units.force
 
     def payload(self, velocity=None) -> bytes:
-        """Of the command."""
+        """Return the payload of the command."""
         parts, items = [], self._items
         if velocity is not None:
             fmt, units = self._encoded.image.formats, self._encoded.units

@@ -50,7 +50,7 @@ class SerialCircuit:
         self._out = ctypes.create_string_buffer(ROOM)
 
     def run(self, data: bytes, cycles: int) -> bytes:
-        """What comes out in so many cycles; ``data`` goes in, behind what is still on its way."""
+        """Send ``data`` after what is still on its way, run so many cycles, and return what comes out."""
         came = self._shared.serial_run(self._handle, data, len(data), cycles, self._out, ROOM)
         return self._out.raw[:came]
 
