@@ -76,9 +76,10 @@ def test_a_netlist_is_placed_once_with_each_seed(tmp_path, monkeypatch):
     assert [placed("b", 1, pins="x"), placed("b", 1, pins="x", mhz=101.0)] == [6, 7]
 
 
-def test_modules_that_are_kept_apart_exist():
+@pytest.mark.parametrize("axes", [3, 1])
+def test_modules_that_are_kept_apart_exist(axes):
     """A module that is renamed is not silently merged with others."""
-    text, _ = emit(Parameters(**flow.SMALLEST))
+    text, _ = emit(Parameters(**flow.SMALLEST | {"axes": axes}))
     modules = re.findall(r"^module (\w+)\(", text, re.MULTILINE)
     for pattern in HIERARCHY:
         assert any(fnmatch(module, pattern) for module in modules), pattern
