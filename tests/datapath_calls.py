@@ -9,7 +9,7 @@ from golden.datapath.rk4 import RK4
 
 
 def call_edge(fmt, tables, count, inputs):
-    """`golden.datapath.edge.edge` on the inputs of `golden.datapath.graphs.edge_graph` for ``count`` tables."""
+    """Call `golden.datapath.edge.edge` on the inputs of `golden.datapath.graphs.edge_graph` for ``count`` tables."""
     i, j = (SimpleNamespace(x=_vector(inputs, f"{end}_x"), v=_vector(inputs, f"{end}_v")) for end in "ij")
     material = _record(inputs, "material", records.material(fmt, count))
     state = _record(inputs, "edge", records.edge_state(fmt))
@@ -17,7 +17,7 @@ def call_edge(fmt, tables, count, inputs):
 
 
 def call_node(fmt, banks, inputs):
-    """`golden.datapath.node.node` on the inputs of `golden.datapath.graphs.node_graph`."""
+    """Call `golden.datapath.node.node` on the inputs of `golden.datapath.graphs.node_graph`."""
     pulls = [_vector(inputs, f"pull{bank}") for bank in range(banks)]
     mass = _record(inputs, "inverse_mass", records.inverse_mass(fmt))
     state = SimpleNamespace(**{name: _vector(inputs, name) for name in records.node_state(fmt)})

@@ -62,7 +62,7 @@ class Piped(wiring.Component):
 
 
 def stream(dut, inputs: dict[str, np.ndarray], outputs, gaps=None) -> dict[str, list]:
-    """Feed a `Piped` one item per cycle; the outputs of each, and how often each fault was reported as ``faults``.
+    """Feed a `Piped` one item per cycle. Return the outputs of each, and under ``faults`` how often each was reported.
 
     ``gaps``: how many cycles without a valid item come before each; the wires carry the next item's values then.
     """

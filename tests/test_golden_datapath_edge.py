@@ -52,7 +52,7 @@ class Edges:
         return [self.number(component, q) for component in raw]
 
     def run(self, swap=False, length=None):
-        """The named quantities of `golden.datapath.edge.edge` in the first stage."""
+        """Return the quantities of `golden.datapath.edge.edge` in the first stage."""
         record = {name: self.number(self.record[name], q) for name, q in records.material(FMT, 1).items()}
         stage = {name: self.number(bit, BIT) for name, bit in RK4.stage(0).items()}
         ends = [
@@ -74,7 +74,7 @@ class Edges:
         )
 
     def exact(self):
-        """Equations (1) to (3) in float64 and SI, from the very integers that the datapath gets."""
+        """Solve equations (1) to (3) in float64 and SI, from the integers that the datapath gets."""
         m, size, step = self.material, self.units.size, self.units.dt
         d = np.ldexp((self.x[1] - self.x[0]).astype(float), -FMT.position.frac_bits) * size
         w = np.ldexp((self.v[1] - self.v[0]).astype(float), -FMT.velocity.frac_bits) * self.units.velocity

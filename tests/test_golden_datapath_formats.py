@@ -76,7 +76,7 @@ def test_the_table_of_the_documentation_has_a_row_for_each_format():
 
 
 def test_accuracy_improves_with_the_bits_of_operands(rng):
-    """By a factor of four for two bits more, in the mean: an error of a last place of an operand or so."""
+    """The mean error falls by a factor of four with two bits more: it is about an LSB of an operand."""
     scene = pressed(irregular((4, 4), rng), MATERIALS["rheological-force"], 45)
     exact = simulate(scene).x[-1]
     errors = []

@@ -1,4 +1,4 @@
-"""A whole step in integers: forces add up to nothing, order and pauses change nothing, held nodes keep to plan."""
+"""A whole step in integers: forces add up to 0, order and pauses change no bit, held nodes move as prescribed."""
 
 import numpy as np
 from integer_objects import MATERIALS, irregular, pressed, random_image
@@ -46,7 +46,7 @@ def test_a_run_in_pieces_is_the_same_run(rng):
 
 
 def test_held_nodes_move_as_prescribed(rng):
-    """Their velocity is kept to the bit, and they go as far as it says: a displacement is rounded once a step."""
+    """Their velocity keeps its bits, and their way is its integral: a displacement is rounded once a step."""
     scene = pressed(irregular((3, 3), rng), MATERIALS["rheological"], 60)
     loaded = encode(scene)
     machine, press = Machine(loaded.image), scene.phases[0]

@@ -25,7 +25,7 @@ FMT = Formats()
 
 
 def damper():
-    """A table of some contents that no float had a part in."""
+    """Return a table whose contents come from integers only."""
     segment = np.arange(1 << FMT.damper_index.width)
     factors = 7919, 104729, 15485863, 49979687, 86028121, 122949823
     fields = zip(records.damper_word(FMT).items(), factors, strict=True)
@@ -53,7 +53,7 @@ def nodes(raw):
 
 
 def tables(raw):
-    """Checksums, which must be those of every machine."""
+    """Checksums, the same on every computer."""
     return {name: zlib.crc32(np.asarray(values, "<i8").tobytes()) for name, values in inverse_table(FMT).items()}
 
 
@@ -69,7 +69,7 @@ def test_integers_are_the_ones_that_were_checked_in(compute):
 
 
 def text(pinned):
-    """JSON with a line for each name."""
+    """Return JSON with a line for each name."""
     blocks = []
     for name, case in pinned.items():
         parts = []

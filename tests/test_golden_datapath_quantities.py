@@ -1,4 +1,4 @@
-"""The table of quantities is what the equations return, and no name of a variable in them matters."""
+"""The equations return what the table of quantities lists, and the names of their variables don't matter."""
 
 from collections import Counter
 
@@ -20,14 +20,14 @@ FMT = Formats()
 BUILD = {"edge": lambda: graphs.edge_graph(FMT, 2), "node": lambda: graphs.node_graph(FMT, 2)}
 
 
-def put_in(monkeypatch, module, names):
-    """Let the graphs be made of the equations of a module with other names."""
+def rename_variables(monkeypatch, module, names):
+    """Build graphs from the equations of a module with other names for its variables."""
     what = module.__name__.rpartition(".")[2]
     monkeypatch.setattr(graphs, what, renamed(module, names)[what])
 
 
 def described(graph: Graph) -> list:
-    """All that a graph's pipeline is made from."""
+    """Return everything that the pipeline of a graph is made from."""
     number = {x: n for n, x in enumerate(graph.operations)}
 
     def known(x):
@@ -44,9 +44,9 @@ def test_no_variable_of_the_equations_has_a_name_that_matters(module, monkeypatc
     before = described(build())
     assert {"edge": "stretch", "node": "acceleration"}[module.__name__.rpartition(".")[2]] in names and len(names) > 30
     for name in names:
-        put_in(monkeypatch, module, {name: f"renamed_{name}"})
+        rename_variables(monkeypatch, module, {name: f"renamed_{name}"})
         assert described(build()) == before, name
-    put_in(monkeypatch, module, {name: f"v{number}" for number, name in enumerate(names)})
+    rename_variables(monkeypatch, module, {name: f"v{number}" for number, name in enumerate(names)})
     assert described(build()) == before
 
 
@@ -87,7 +87,7 @@ def test_each_quantity_stands_once_in_words_of_its_own():
 
 
 def test_a_normalised_quantity_is_one_and_has_a_shift():
-    """What is normalised has no unit of its own: its format's unit is a power of two."""
+    """The unit of a normalised quantity's format is a power of two."""
     for build in BUILD.values():
         for x in build().operations:
             if x.quantity and QUANTITIES[x.quantity].measured and x.fmt.unit:

@@ -14,7 +14,7 @@ F = Fraction
 
 
 def test_the_tableau_is_of_fourth_order():
-    """Each of the eight conditions of Butcher's for a method whose stage s uses only stage s - 1."""
+    """Butcher's eight order conditions, for a method whose stage s uses only stage s - 1."""
     a, b, c = RK4.reach, RK4.weight, (F(0), *RK4.reach)
     stages = range(RK4.stages)
     assert sum(b) == 1
@@ -96,7 +96,7 @@ def test_the_bits_of_a_stage_say_what_the_tableau_says():
 
 
 def numbers(rng, width):
-    """Every small one, the neighbours of every power of two, and some anywhere."""
+    """Return every small number, the neighbours of every power of two, and random ones."""
     powers = [s * (1 << bits) + d for bits in range(width - 1) for s in (-1, 1) for d in (-1, 0, 1)]
     end = 1 << width - 1
     return np.unique([-end, end - 1, *powers, *range(-200, 200), *rng.integers(-end, end, 2000)])

@@ -46,7 +46,7 @@ def test_the_inverse_square_root_of_every_operand_is_within_its_bound(operand, s
 
 
 def test_a_square_below_one_reads_the_value_of_one():
-    """It happens for an edge without length only, which is a fault: what is read must be harmless."""
+    """Only an edge without length gets there, which is a fault; the table's word must do no harm."""
     table = inverse_table(FMT)
     below = len(table["value"]) // 4
     assert (table["value"][:below] == FMT.inverse_value.raw_max).all()
@@ -66,7 +66,7 @@ SEGMENTS = 1 << FMT.damper_index.width
 
 
 class Lookup:
-    """rho and sigma (m/N s) of a material at trial forces (N), as the datapath finds them."""
+    """The lookup of rho and sigma (m/N s) of a material at trial forces (N), by the datapath's own functions."""
 
     def __init__(self, material):
         self.material = m = material
@@ -77,7 +77,7 @@ class Lookup:
         self.faults = Counter()
 
     def __call__(self, g):
-        """(|g| as the datapath has it, rho, sigma)"""
+        """Return (|g| as the datapath has it, rho, sigma)."""
         trial = number(np.ldexp(g / self.full, FMT.trial.frac_bits), FMT.trial + FMT.trial, self.faults)
         size, mantissa, shift = magnitude(trial, FMT.operand)
         tables = Tables(FMT, inverse_table(FMT), stack([self.table.words], FMT))
@@ -88,7 +88,7 @@ class Lookup:
         return size.to_float() * self.full, rho, creep * self.units.velocity / (2 * self.full)
 
     def everywhere(self):
-        """Trial forces over the whole range, every segment's inside, and closely around both kinks."""
+        """Return trial forces over the whole range, inside every segment, and close to both kinks."""
         around = 1 + np.linspace(-1e-3, 1e-3, 2001)
         wide = np.geomspace(self.g1 / 100, 1.99 * self.full, 20_000)
         inside = np.geomspace(self.g1, self.g2, 40 * SEGMENTS)
@@ -111,7 +111,7 @@ def test_the_damper_is_that_of_the_exact_law_to_a_ten_thousandth(name):
 
 @pytest.mark.parametrize("name", DAMPERS)
 def test_outside_the_branch_the_constants_are_exact(name):
-    """To the bit: they come from the record, not from the table."""
+    """They come from the record, not from the table, so they are exact."""
     lookup = Lookup(DAMPERS[name])
     threshold = FMT.threshold.lsb * lookup.full
     record = lookup.record
@@ -129,14 +129,14 @@ def test_outside_the_branch_the_constants_are_exact(name):
 
 
 def straight(words, name, sign, segment, fraction):
-    """The line that a segment's word of the table describes."""
+    """Return the line that a segment's word describes."""
     value, slope, shift = (words[f"{name}_{part}"][segment] for part in ("value", "slope", "shift"))
     return np.ldexp(FMT.damper_value.lsb * value + sign * FMT.damper_slope.lsb * slope * fraction, -shift)
 
 
 @pytest.mark.parametrize("name", DAMPERS)
 def test_no_segment_contains_a_kink(name):
-    """Where an end of the branch lies inside a segment, the line is near the smooth continuation all along it."""
+    """The line of a segment with an end of the branch in it is near the smooth continuation all along the segment."""
     lookup, fraction = Lookup(DAMPERS[name]), np.linspace(0, 1, 21)
     table, finest = lookup.table, 1 << FMT.octave.frac_bits
     places = (table.first_octave + np.arange(SEGMENTS + 1) * finest // 2**table.fineness) / finest

@@ -1,4 +1,4 @@
-"""The datapath as a graph is the datapath: evaluated operation by operation it gives the same bits and faults."""
+"""The graphs of the datapath, evaluated operation by operation, give the same bits and faults as the equations."""
 
 import re
 from collections import Counter
@@ -44,7 +44,7 @@ virtual void wait wait_order wand weak weak0 weak1 while wildcard wire with with
 
 
 def evaluate(graph: Graph, inputs: dict[str, QArray], contents: dict, faults: Counter) -> dict:
-    """Node -> number; every operation with `QArray`, which must give the format that the node says."""
+    """Return the number of every operation, computed with `QArray`, which must agree on the format."""
     numbers = {}
     for n in graph.operations:
         numbers[n] = apply(n, [numbers[operand] for operand in n.operands], inputs, contents, faults)
@@ -189,7 +189,7 @@ def test_what_outputs_do_not_need_is_dropped():
     assert graph.outputs == {"y": doubled} and doubled.name == "y"
 
 
-def test_a_variable_that_is_called_like_an_input_is_its_next_value():
+def test_a_quantity_with_the_name_of_an_input_is_its_next_value():
     graph = Graph()
     x = graph.input("x", Q(4, 0))
     graph.name_and_prune({"x": x + 1}, ["x"])
@@ -197,7 +197,7 @@ def test_a_variable_that_is_called_like_an_input_is_its_next_value():
     assert graph.outputs["x"].name == "x_next"
 
 
-def test_integers_and_bits_become_nodes():
+def test_integers_and_bits_become_operations():
     graph = Graph()
     x = graph.input("x", Q(-1, 5))
     assert (3 - x).operands[0].fmt == Q(2, 0, signed=False)

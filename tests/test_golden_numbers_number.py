@@ -1,4 +1,4 @@
-"""All number types offer what the equations need of a number, under the same names."""
+"""All number types have the operations of the protocol, with the same arguments."""
 
 import inspect
 from collections import Counter

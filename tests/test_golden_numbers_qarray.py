@@ -80,13 +80,13 @@ def test_rounding_and_saturation_are_those_of_apytypes():
 
 
 def half_up(value: Fraction, target: Q) -> int:
-    """The exact value in last places of the target, rounded half up."""
+    """Return the exact value in LSBs of the target, rounded half up."""
     scaled = value * Fraction(2) ** target.frac_bits + Fraction(1, 2)
     return scaled.numerator // scaled.denominator
 
 
 def check(x: QArray, target: Q, power, result: QArray, beyond=()):
-    """``x * 2**power`` in ``target``, each against its exact fraction; faults by the rule that `QArray.to` states."""
+    """Compare ``x * 2**power`` in ``target`` with its exact fraction, and the faults with the rule in `QArray.to`."""
     faults = 0
     for number, (raw, p, got) in enumerate(np.nditer([x.raw, power, result.raw])):
         exact = Fraction(int(raw)) * Fraction(2) ** (int(p) - x.fmt.frac_bits)

@@ -1,4 +1,4 @@
-"""Records: what is packed comes out again, from ints, arrays and hardware values."""
+"""Records give back the fields they were packed from: of ints, arrays and hardware values."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A choice of one among many words, by an index that comes with them or before."""
+"""The pipelined multiplexer: one of many words, by an index that comes with them or earlier."""
 
 import pytest
 from amaranth.hdl import Module, Signal

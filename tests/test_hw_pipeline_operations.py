@@ -196,7 +196,7 @@ def test_rounding_and_shifting_exhaustively_at_small_widths(source, target):
 
 
 class NoWires:
-    """Values of an operation that go nowhere."""
+    """Signals for the values of an operation that is not built."""
 
     def __call__(self, value):
         return Signal(value.shape())

@@ -36,8 +36,8 @@ COSTS = {
 
 
 def vectors(rng, graph: Graph, count: int) -> dict[str, np.ndarray]:
-    """Raw inputs of so many edges: random and corner values, half of the nodes close together, shifts that mostly make
-    something of a product."""
+    """Return raw inputs of so many edges: random and corner values, half of the nodes close together, most shifts
+    such that a product does not vanish."""
     formats = {name: node.fmt for name, node in graph.inputs.items()}
     values = {name: random_raw(rng, q, count) for name, q in formats.items()}
     for first, second in ((f"i_{s}_{a}", f"j_{s}_{a}") for s in "xv" for a in AXES):
@@ -54,7 +54,7 @@ def vectors(rng, graph: Graph, count: int) -> dict[str, np.ndarray]:
 
 
 def expected(datapath: EdgeDatapath, values, damper, monkeypatch):
-    """The model's outputs, its faults, and for each operation that faults (cycle, fault's name, items)."""
+    """Return the model's outputs, its faults, and for each operation that faults (cycle, fault's name, items)."""
     fmt, graph = datapath.formats, datapath.graph
     contents = {"inverse": inverse_table(fmt), "damper": damper}
     faults, cycles = Counter(), []
@@ -80,7 +80,7 @@ def expected(datapath: EdgeDatapath, values, damper, monkeypatch):
 
 
 def traffic(dut: EdgeProcessor, values, damper, gaps, rng):
-    """(outputs of each item, cycle in which each came, (cycle, name) of the reported faults).
+    """Return (outputs of each item, cycle in which each entered, (cycle, name) of the reported faults).
 
     Every wire changes in every cycle and is right only when the schedule asks for it.
     """
@@ -135,7 +135,7 @@ def traffic(dut: EdgeProcessor, values, damper, gaps, rng):
     ids=["as built", "fewer registers", "14/34 bits", "22/44 bits, more registers"],
 )
 def test_the_edge_processor_is_the_model(fmt, cost, rng, monkeypatch):
-    """Without gaps, then with random ones: outputs, and faults, each in its cycle."""
+    """Items come without gaps, then with random ones; outputs and faults come each in its cycle."""
     datapath, count = EdgeDatapath(fmt, TABLES, COSTS[cost]), 240
     damper = random_record(rng, records.damper_word(fmt), (TABLES, 1 << fmt.damper_index.width))
     values = vectors(rng, datapath.graph, count)

@@ -1,4 +1,4 @@
-"""The datapath of an edge: equations (1) to (5) and (7) in step units, over any number type (`golden.numbers.qarray`).
+"""The datapath of an edge: equations (1) to (5) and (7) in step units, over any `golden.numbers.number.Number`.
 
 A block-normalised quantity ``q`` is a mantissa and a shift: its value is ``q * 2**-q_shift``.
 """
@@ -9,7 +9,7 @@ from golden.numbers.qformat import Q
 
 
 def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
-    """One Runge-Kutta stage of one edge between the nodes ``i`` and ``j``.
+    """Compute one Runge-Kutta stage of one edge between the nodes ``i`` and ``j``.
 
     Parameters
     ----------
@@ -31,8 +31,8 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
     Returns
     -------
     dict
-        Every named quantity below. The outputs are ``pull`` (the force on i; on j it is the same integers with the
-        opposite sign), ``base_next``, ``ratio_next`` and ``total_next``.
+        The quantities of `golden.datapath.quantities.EDGE` by name. The outputs are ``pull`` (the force on i; on j it
+        is the same integers with the opposite sign), ``base_next``, ``ratio_next`` and ``total_next``.
     """
     span = fmt.position.int_bits
     axis = axis_of(fmt, tables, i.x, j.x)
@@ -74,7 +74,7 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
 
     total, value = rk4(stage, state.base, state.total, slope)
     total_next = total.to(fmt.ratio)
-    value = value.to(Q(value.fmt.int_bits + 1, fmt.ratio.frac_bits))  # never saturates: what is beyond is clamped
+    value = value.to(Q(value.fmt.int_bits + 1, fmt.ratio.frac_bits))  # wide enough never to saturate; the clamp follows
     ratio_next = clamp(value, material.a_min, material.a_max).to(fmt.ratio)
     base_next = stage.last.select(ratio_next, state.base)
     return (
@@ -92,13 +92,13 @@ def edge(fmt, tables, stage, velocity_shift, material, i, j, state):
 
 
 def axis_of(fmt, tables, xi, xj):
-    """d = xj - xi, ``square`` = l^2, ``inverse`` = 1 / l and u = d / l; lengths are in units of 2^(span - l_shift)
-    sizes."""
+    """Return the quantities that follow from the positions: d = xj - xi, ``square`` = l^2, ``inverse`` = 1 / l and
+    u = d / l. Lengths are in units of 2^(span - l_shift) sizes."""
     span = fmt.position.int_bits
     d, d_shift = normalise([c.scale(-span) for c in difference(xj, xi)], fmt.operand)
     squared = dot(d, d, fmt.dot_frac_bits)
     short = squared < 1
-    silent = fmt.square.nameless  # the one that is not taken may saturate, the other one only by its last place
+    silent = fmt.square.nameless  # the branch not taken may saturate; the other can do so only by an LSB
     square = short.select(squared.scale(2).to(silent), squared.to(silent))
     degenerate = square < 1
     degenerate.fault("edge length")
@@ -117,23 +117,23 @@ def axis_of(fmt, tables, xi, xj):
 
 
 def voigt_length(fmt, share, axis):
-    """a l = a l^2 / l: what the Voigt part takes of the edge. a l^2 is ready when 1 / l is. L is this very product at
-    the start, so that rest is exact."""
+    """Return a l = a l^2 / l, the length of the Voigt part; a l^2 is ready when 1 / l is. The natural length L is taken
+    from this product too, so that rest is exact."""
     weighted, shift = leading(share * axis["square"], fmt.operand)
     product = (weighted * axis["inverse"]).scale(fmt.position.int_bits)
     return product.to(fmt.length, right=axis["l_shift"] + shift, cut=True)
 
 
 def interpolate_inverse(fmt, tables, square):
-    """1 / sqrt(square) for 1 <= square < 4."""
+    """Return 1 / sqrt(square) for 1 <= square < 4."""
     index = square.field(fmt.inverse_fraction.width, fmt.inverse_index)
     word = tables.inverse(index)
     return cut(word.value - word.slope * square.field(0, fmt.inverse_fraction), fmt.inverse)
 
 
 def damper(fmt, tables, material, size, g, g_shift):
-    """rho and sigma, each a mantissa and a shift, at |g| = size, whose mantissa is g."""
-    # Where |g| lies among the table's segments: octaves and the fraction of one, which is linear in |g|
+    """Return rho and sigma, each a mantissa and a shift, at |g| = size, whose mantissa is g."""
+    # The place of |g| among the table's segments: octaves, and the fraction of an octave, which is linear in |g|
     octave_fraction = g.field(0, fmt.octave_fraction)
     octaves = octave_fraction - (g_shift + material.first_octave)
     finest = Q(octaves.fmt.int_bits + fmt.fineness.raw_max, fmt.damper_fraction.width)  # loses nothing

@@ -1,9 +1,9 @@
-"""Every number of the circuit, declared once: the NumPy model, the RTL, the memory images, the documentation's
-table and the tests read their widths here.
+"""The format of every number of the circuit, in one place: the NumPy model, the RTL, the memory images, the
+documentation's table and the tests read their widths here.
 
 Units: a *size* is the object's size, a *step* the time step. ``velocity``, ``trial`` and ``force`` are fractions of a
-full scale that the host picks per scene (a power of two of sizes per step and so on, `sim/encode/units.py`), so that
-small time steps lose no bits; the circuit sees those powers only as shift counts.
+full scale that the host picks per scene (a power of two of sizes per step and so on, `sim.encode.units`), so that
+small time steps lose no bits. The circuit sees those powers only as shift counts.
 """
 
 from dataclasses import dataclass, fields
@@ -74,7 +74,7 @@ class Formats:
 
     @cached_property
     def threshold(self):
-        """A magnitude that the sum of two trial forces is compared with."""
+        """A bound of the magnitude of a trial force."""
         return unsigned(1, self.trial.frac_bits, name="threshold", unit="trial full scale")
 
     @cached_property
@@ -83,7 +83,7 @@ class Formats:
 
     @cached_property
     def force(self):
-        """An edge's force on a node: `degree_bits` shorter than its accumulator, which therefore cannot overflow."""
+        """The force of an edge on a node: `degree_bits` shorter than its accumulator, so that this can't overflow."""
         return Q(1, self.state - 1 - self.degree_bits, name="force", unit="force full scale")
 
     degree_bits = 5
@@ -120,7 +120,7 @@ class Formats:
 
     @property
     def dot_frac_bits(self):
-        """Of the products in a scalar product: what is cut from them is below 1/16 of a place of what it is made."""
+        """Fraction bits kept of each product in a dot product; truncation costs less than 1/16 LSB of the result."""
         return self.operand + 4
 
     # Small integers
@@ -158,15 +158,15 @@ class Formats:
         return unsigned(0, self.operand - 1)
 
     octave = Q(6, 9, name="octave", unit="octave")
-    """A place on the logarithmic axis of |g|: octaves above the full scale, and the finest segments of one."""
+    """A position on the logarithmic axis of |g|: octaves above the full scale, and the finest segments of an octave."""
 
     @cached_property
     def octave_fraction(self):
-        """A mantissa's bits behind its first, which is 1."""
+        """The bits of a mantissa after its first, which is 1."""
         return unsigned(0, self.mantissa.width - 1)
 
     fineness = unsigned(4, 0, name="fineness", unit="log2")
-    """Segments of a table to an octave."""
+    """Segments of a table per octave."""
 
     @cached_property
     def trial_octaves(self):
@@ -180,7 +180,7 @@ class Formats:
 
 
 def table(formats: Formats) -> str:
-    """The format table of the documentation, in Markdown."""
+    """Return the format table of the documentation, in Markdown."""
     rows = ["| quantity | format | bits | range | step | unit |", "|---|---|---|---|---|---|"]
     for q in formats.all():
         low, high = q.raw_min * q.lsb, (q.raw_max + 1) * q.lsb

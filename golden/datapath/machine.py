@@ -23,7 +23,7 @@ class Machine:
     ----------
     watch : callable, optional
         Called in each stage with the quantities of `golden.datapath.edge.edge`, then with those of
-        `golden.datapath.node.node`: looking at them changes no bit.
+        `golden.datapath.node.node`. It must not change them.
 
     Attributes
     ----------
@@ -108,11 +108,12 @@ class Machine:
 
 
 def take(vector, index):
+    """Return the vectors of the nodes ``index``."""
     return [QArray(c.raw[index], c.fmt, c.faults) for c in vector]
 
 
 def accumulate(nodes: int, ends, pull):
-    """The sum over edges: ``pull`` on the first end, the same integers with the opposite sign on the second."""
+    """Return the sum over edges: ``pull`` on the first end, the same integers with the opposite sign on the second."""
     forces = np.zeros(nodes, np.int64)
     np.add.at(forces, ends[0], pull)
     np.subtract.at(forces, ends[1], pull)

@@ -1,4 +1,4 @@
-"""Everything the circuit is loaded with, as integers in the formats of `golden.datapath.formats`."""
+"""The contents of the circuit's memories, as integers in the formats of `golden.datapath.formats`."""
 
 from dataclasses import dataclass, field
 
@@ -10,9 +10,9 @@ from golden.datapath.tables import inverse_table
 
 @dataclass(eq=False)
 class MemoryImage:
-    """N nodes, E edges, M materials, T damper tables; vectors always have three components.
+    """An object of N nodes, E edges, M materials and T damper tables; vectors always have three components.
 
-    The order of nodes and edges is the order in which the circuit works; it changes the speed, never the result.
+    The circuit works in the order of nodes and edges here. The order changes the speed, never the result.
     """
 
     formats: Formats

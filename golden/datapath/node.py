@@ -1,11 +1,11 @@
-"""The datapath of a node: Newton's law and one Runge-Kutta stage, over any number type (`golden.numbers.qarray`)."""
+"""The datapath of a node: Newton's law and one Runge-Kutta stage, over any `golden.numbers.number.Number`."""
 
 from golden.datapath.rk4 import rk4, rk4_early, weigh
 from golden.numbers.block import normalise
 
 
 def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
-    """One Runge-Kutta stage of one node.
+    """Compute one Runge-Kutta stage of one node.
 
     Parameters
     ----------
@@ -24,8 +24,8 @@ def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
     Returns
     -------
     dict
-        Every named quantity below. The outputs are ``force``, ``x``, ``v`` (for the next stage), ``x_base_next``,
-        ``v_base_next``, ``x_total`` and ``v_total``.
+        The quantities of `golden.datapath.quantities.NODE` by name. The outputs are ``force``, ``x``, ``v`` (for the
+        next stage), ``x_base_next``, ``v_base_next``, ``x_total`` and ``v_total``.
     """
     whole_force = fmt.accumulator + fmt.accumulator  # all pulls together still fit an accumulator
     sums = [load[0].total(terms).to(whole_force) for terms in zip(*pulls, load, strict=True)]
@@ -51,7 +51,7 @@ def node(fmt, stage, velocity_shift, pulls, load, inverse_mass, state):
 
 
 def advance(stage, rule, base, total, slope, value_format, total_format):
-    """One of `golden.datapath.rk4`'s rules for a vector: (value, base, total) of the next stage."""
+    """Apply one of the rules of `golden.datapath.rk4` to a vector; return (value, base, total) of the next stage."""
     steps = [rule(stage, *component) for component in zip(base, total, slope, strict=True)]
     totals = [total.to(total_format) for total, _ in steps]
     values = [value.to(value_format) for _, value in steps]

@@ -24,7 +24,7 @@ class Quantity:
     normalised : bool
         Whether it is a mantissa that travels with a shift. It fills its bits on purpose, so it has no headroom.
     extra_register_after : bool
-        Whether one more register follows its operation: the paths behind it were the longest after routing.
+        Whether one more register follows its operation: its paths were the longest after routing.
     """
 
     name: str

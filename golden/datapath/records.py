@@ -6,7 +6,7 @@ from golden.numbers.record import Record
 
 
 def material(fmt: Formats, tables: int) -> Record:
-    """Coefficients of one material. A value is ``mantissa * 2**-shift``; what they are in SI is in
+    """Return the coefficients of one material; a value is ``mantissa * 2**-shift``. Their units are in
     `sim.encode.units`."""
     m, e = fmt.mantissa, fmt.exponent
     return Record(
@@ -37,11 +37,12 @@ def material(fmt: Formats, tables: int) -> Record:
 
 
 def inverse_word(fmt: Formats) -> Record:
+    """Return a segment of the table of 1 / sqrt(q), which falls: the slope is a magnitude."""
     return Record({"value": fmt.inverse_value, "slope": fmt.inverse_slope})
 
 
 def damper_word(fmt: Formats) -> Record:
-    """One segment: rho falls and sigma rises with |g|, so both slopes are magnitudes."""
+    """Return a segment of a damper table: rho falls and sigma rises with |g|, so both slopes are magnitudes."""
     return Record(
         {
             f"{quantity}_{part}": q
@@ -52,11 +53,12 @@ def damper_word(fmt: Formats) -> Record:
 
 
 def edge_state(fmt: Formats) -> Record:
+    """Return an edge's natural length, and its ratio as the Runge-Kutta stages need it."""
     return Record({"length": fmt.length, "base": fmt.ratio, "ratio": fmt.ratio, "total": fmt.ratio})
 
 
 def node_state(fmt: Formats) -> Record:
-    """Vectors."""
+    """Return a node's state; each field is the format of a vector's components."""
     return Record(
         {
             "x_base": fmt.position,
@@ -69,18 +71,19 @@ def node_state(fmt: Formats) -> Record:
 
 
 def inverse_mass(fmt: Formats) -> Record:
+    """Return a node's m_ref / m."""
     return Record({"value": fmt.mantissa, "shift": fmt.exponent})
 
 
 def edge_entry() -> Record:
-    """An edge in a lane's list: its nodes, whether it is the lane's first on them in a stage, its material. The lists
-    of all lanes are equally long; an entry that is not ``valid`` fills up."""
+    """Return an edge in a lane's list: its nodes, whether it is the lane's first on each of them in a stage, its
+    material. The lists of all lanes are equally long, so the last entries may be not ``valid``."""
     node, material, bit = unsigned(12, 0), unsigned(6, 0), BIT
     return Record({"i": node, "j": node, "material": material, "i_first": bit, "j_first": bit, "valid": bit})
 
 
 def node_entry() -> Record:
-    """When a node may be updated: after so many rows of edges, the same number for all that are updated at once; and
-    which accumulators then hold a force on it, first ends in the lower bits. An entry that is not ``valid`` fills up.
-    """
+    """Return a node in the list of updates: how many rows of edges must be summed first, the same number for all nodes
+    updated at once; and which accumulators hold a force on it, first ends in the lower bits. Entries that are not
+    ``valid`` fill the last row."""
     return Record({"need": unsigned(17, 0), "mask": unsigned(16, 0), "valid": BIT})

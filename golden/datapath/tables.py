@@ -16,18 +16,18 @@ from golden.datapath.formats import Formats
 
 
 def _lines(curve: Callable, start: np.ndarray, end: np.ndarray):
-    """Value at the start of each segment and change over it, in float64."""
+    """Return the value at the start of each segment and the change over it, in float64."""
     first, last, middle = curve(start), curve(end), curve((start + end) / 2)
     return first + (middle - (first + last) / 2) / 2, last - first
 
 
 def inverse_table(fmt: Formats) -> dict[str, np.ndarray]:
-    """1 / sqrt(q) on [1, 4) by the leading bits of q. Below 1, where no normalised q is, the value of 1."""
+    """Return the table of 1 / sqrt(q) on [1, 4), indexed by the leading bits of q. A normalised q is never below 1."""
     entries = 1 << fmt.inverse_index.width
     q = np.maximum(np.arange(entries) * 4.0 / entries, 1.0)
     value, change = _lines(lambda q: q**-0.5, q, q + 4.0 / entries)
     change[: entries // 4] = 0
-    # The result is cut, not rounded; and it is less than 1, as the value is, so the first line starts lower
+    # The result is cut, so the lines are half an LSB higher. They must stay below 1, so the first one starts lower
     value, end = value + fmt.inverse.lsb / 2, value + fmt.inverse.lsb / 2 + change
     value = np.minimum(value, 1 - fmt.inverse_value.lsb)
     change = np.where(change, end - value, 0)
@@ -39,7 +39,7 @@ def inverse_table(fmt: Formats) -> dict[str, np.ndarray]:
 
 @dataclass(frozen=True)
 class DamperTable:
-    """Segments of one material: where they start on the octave axis, what power of two of them make an octave, and
+    """The segments of one material: where they start on the octave axis, the power of two of them per octave, and
     their words."""
 
     first_octave: int  # raw
@@ -48,7 +48,7 @@ class DamperTable:
 
 
 def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Callable) -> DamperTable:
-    """The middle branch of (7) for g1 <= |g| <= g2 < 2, in units of the trial force's full scale.
+    """Return the middle branch of (7) for g1 <= |g| <= g2 < 2, in units of the trial force's full scale.
 
     ``rho`` and ``sigma`` are smooth functions of |g| in those units, continued past both ends.
 
@@ -68,7 +68,7 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
     used = floor(last * per_octave) - floor(first * per_octave) + 1
     middle = (
         fmt.octave_fraction.lsb / 2
-    )  # of all |g| that have the same leading bits (`golden.numbers.block.magnitude`)
+    )  # |g| is cut (`golden.numbers.block.magnitude`): this is the middle of all that give the same bits
     g = octave_inverse(start + np.arange(segments + 1) / per_octave + middle)
     words = {}
     for name, curve, sign in (("rho", rho, -1), ("sigma", sigma, 1)):
@@ -85,14 +85,15 @@ def damper_table(fmt: Formats, g1: float, g2: float, rho: Callable, sigma: Calla
 
 
 def octave(x):
-    """The logarithm that the circuit computes: exponent plus fraction of the mantissa."""
+    """Return the logarithm as the circuit computes it: exponent plus fraction of the mantissa."""
     mantissa, exponent = np.frexp(x)
     return exponent - 1 + (2 * mantissa - 1)
 
 
-def octave_inverse(place):
-    exponent = np.floor(place)
-    return np.ldexp(1 + place - exponent, exponent.astype(int))
+def octave_inverse(position):
+    """Return the number whose `octave` is ``position``."""
+    exponent = np.floor(position)
+    return np.ldexp(1 + position - exponent, exponent.astype(int))
 
 
 class Tables:

@@ -1,13 +1,13 @@
-"""Vectors that share one exponent, and the arithmetic that goes with them, over any number type."""
+"""Block floating point: vectors whose components share one exponent, over any `golden.numbers.number.Number`."""
 
 from golden.numbers.qformat import Q, unsigned
 
 
 def normalise(vector, operand: int):
-    """The mantissas of ``vector``, ``operand`` bits wide, and the shift they share: ``x = mantissa * 2**-shift``.
+    """Return mantissas of ``operand`` bits and the shift they share: ``x = mantissa * 2**-shift``.
 
-    The largest component loses its redundant sign bits (leading zeros, when unsigned); the exact difference of two
-    state words thus keeps its leading bits, however small it is.
+    The largest component loses its redundant sign bits (leading zeros, if unsigned). So the exact difference of two
+    state words keeps its leading bits, however small it is.
     """
     fmt = vector[0].fmt
     most = fmt.width - operand
@@ -19,18 +19,18 @@ def normalise(vector, operand: int):
 
 
 def leading(x, operand: int):
-    """The ``operand`` leading bits of ``x``, not negative, and their shift: ``x = mantissa * 2**-shift``, but for what
-    is below the last place."""
+    """Return the ``operand`` leading bits of a number that is not negative, and their shift: ``x`` is
+    ``mantissa * 2**-shift`` but for the bits below the mantissa's LSB."""
     shift = x.lead([x], x.fmt.width - operand)
     return cut(x.to(x.fmt, left=shift), unsigned(x.fmt.int_bits, operand - x.fmt.int_bits)), shift
 
 
 def magnitude(x, operand: int):
-    """``|x|``, its mantissa in [1/2, 1) and the shift: ``|x| = mantissa * 2**(x.fmt.int_bits - 1 - shift)``.
+    """Return ``|x|``, its mantissa in [1/2, 1) and the shift: ``|x| = mantissa * 2**(x.fmt.int_bits - 1 - shift)``.
 
-    The mantissa has the leading bits as they are, not rounded: what follows needn't wait for a carry. The shift is that
-    of ``x``, so that it is known as soon as ``|x|`` is; it makes a power of two below 0 a mantissa of 1, which
-    saturates to the one before.
+    The mantissa is cut, not rounded, so the operations after it need not wait for a carry. The shift is counted on
+    ``x``, so it is known as soon as ``|x|``. Therefore a negative power of two gets a mantissa of 1, which saturates
+    to the largest one.
     """
     size, below = abs(x), x.fmt.width - 1 - operand
     shift = x.lead([x], below)
@@ -39,26 +39,27 @@ def magnitude(x, operand: int):
 
 
 def cut(x, fmt):
-    """``x``, in the range of ``fmt``, without what is below its last place: no carry is awaited."""
+    """Return ``x``, which is in the range of ``fmt``, without the bits below its LSB; this needs no carry."""
     return x.field(x.fmt.frac_bits - fmt.frac_bits, fmt)
 
 
 def difference(a, b):
-    """``a - b``, component by component."""
+    """Return ``a - b``, component by component."""
     return [p - q for p, q in zip(a, b, strict=True)]
 
 
 def dot(a, b, frac_bits: int):
-    """``a . b``, of products that are cut after so many fraction bits: less has to be added."""
+    """Return the dot product. Its products are cut to ``frac_bits`` fraction bits, which makes the sum narrower."""
     products = [p * q for p, q in zip(a, b, strict=True)]
     fmt = products[0].fmt
     return a[0].total([cut(product, Q(fmt.int_bits, frac_bits, fmt.signed)) for product in products])
 
 
 def clamp(x, low, high):
+    """Return ``x``, or the end of the interval that it is beyond."""
     return (x < low).select(low, (high < x).select(high, x))
 
 
 def with_sign(negative, magnitude):
-    """``-magnitude`` where ``negative`` is 1."""
+    """Return ``-magnitude`` where ``negative`` is 1, else ``magnitude``."""
     return negative.select(0 - magnitude, magnitude)

@@ -1,4 +1,4 @@
-"""What the equations of the datapath need of a number."""
+"""The operations that the equations of the datapath need of a number."""
 
 from typing import Protocol, Self, runtime_checkable
 

@@ -1,8 +1,7 @@
 """Bit-exact fixed-point arrays on NumPy integers: the reference for every other number type.
 
-A *number* of the datapath has a format ``fmt`` and the operators below; `golden.datapath.edge` and
-`golden.datapath.node` are written with nothing else, so that the same lines are this integer model, a compiled program
-and a pipeline (`golden.numbers.graph`).
+`golden.datapath.edge` and `golden.datapath.node` use only the operations of `golden.numbers.number.Number`. So the same
+lines are this integer model and, on `golden.numbers.graph.Operation`, a compiled program and a pipeline.
 """
 
 from collections import Counter
@@ -13,10 +12,10 @@ from golden.numbers.qformat import BIT, Q, count, smallest, total
 
 
 class QArray:
-    """Integers ``raw`` (int64, any shape) standing for ``raw * 2**-fmt.frac_bits``.
+    """Integers ``raw`` (int64, any shape) that stand for ``raw * 2**-fmt.frac_bits``.
 
-    ``+ - * abs() < total scale select field`` are exact. Only `to` rounds, and a saturation there is counted in
-    ``faults`` under the name of the format; a format without a name saturates without a word.
+    All operations are exact, only `to` rounds. A saturation there is counted in ``faults`` under the name of the
+    format; a saturation to a format without a name is no fault.
     """
 
     __slots__ = ("faults", "fmt", "raw")
@@ -36,7 +35,7 @@ class QArray:
         return QArray(raw, fmt, self.faults)
 
     def _number(self, other, beside=None) -> "QArray":
-        """``other``, or an integer in the smallest format that holds it; 0 takes no bits of its own ``beside`` one."""
+        """Return ``other``; an integer in the smallest format that holds it, 0 in the format of ``beside``."""
         if isinstance(other, QArray):
             return other
         return self._new(np.int64(other), beside.fmt if other == 0 and isinstance(beside, QArray) else smallest(other))
@@ -74,22 +73,22 @@ class QArray:
 
     @staticmethod
     def total(terms) -> "QArray":
-        """The sum of all ``terms``."""
+        """Return the sum of all ``terms``."""
         frac = max(x.fmt.frac_bits for x in terms)
         return terms[0]._new(sum(x.raw << frac - x.fmt.frac_bits for x in terms), total(x.fmt for x in terms))
 
     def select(self, yes, no):
-        """``yes`` where this bit is 1, ``no`` where it is 0, in the format that holds both."""
+        """Return ``yes`` where this bit is 1, ``no`` where it is 0, in the format that holds both."""
         yes, no = self._number(yes, no), self._number(no, yes)
         a, b = yes._aligned(no)
         return self._new(np.where(self.raw, a, b), yes.fmt.union(no.fmt))
 
     def scale(self, power: int):
-        """This number times ``2**power``: the same integer in another format."""
+        """Return this number times ``2**power``: the same integer in another format."""
         return self._new(self.raw, self.fmt.scale(power))
 
     def field(self, low: int, fmt: Q):
-        """Bits ``low`` and up of the integer, read as ``fmt``."""
+        """Return bits ``low`` and up of the integer, read as ``fmt``."""
         return self._new(fmt.from_bits(self.raw >> low), fmt)
 
     def fault(self, name: str):
@@ -99,22 +98,22 @@ class QArray:
 
     @staticmethod
     def lead(vector, most: int) -> "QArray":
-        """How far left all numbers of ``vector`` can be shifted without loss, at most ``most``."""
+        """Return how far left all numbers of ``vector`` can be shifted without loss, at most ``most``."""
         fmt, magnitude = vector[0].fmt, 0
         for x in vector:
             magnitude = magnitude | (x.raw ^ x.raw >> 63)
-        leading = magnitude & ~(magnitude >> 1)  # its highest bit, and a next one of 0: float64 can't round it up
+        leading = magnitude & ~(magnitude >> 1)  # the bit below its highest is 0, so float64 can't round it up
         length = np.frexp(leading.astype(float))[1].astype(np.int64)
         return vector[0]._new(np.minimum(fmt.width - fmt.signed - length, most), count(most))
 
     def to(self, fmt: Q, *, left=None, right=None, cut=False):
-        """This number (times ``2**left``, or ``2**-right``) in the format ``fmt``: rounded half up, then saturated.
+        """Return this number (times ``2**left``, or ``2**-right``) in the format ``fmt``: rounded half up, saturated.
 
         ``left`` is a shift that loses no leading bits, as `lead` counts it. A shift to the right may ``cut`` instead of
-        round, which is down and awaits no carry.
+        rounding: it then rounds down, which needs no carry.
 
-        Saturation is a fault when the exact value is a whole step or more beyond the largest, or rounds to below
-        the smallest, or when ``right`` is negative and the value not zero: a shift to the left is not on offer.
+        Saturation is a fault if the exact value is an LSB or more above the largest number, or rounds to below the
+        smallest. A negative ``right`` saturates, with a fault, unless the value is 0: it can't shift to the left.
         """
         raw, drop = self.raw, self.fmt.frac_bits - fmt.frac_bits
         if left is not None:

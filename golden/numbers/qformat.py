@@ -14,7 +14,7 @@ class Q:
     steps of 2**-17, and ``Q(0, 18, signed=False)`` is 18 bits wide and holds [0, 1) in steps of 2**-18. Either
     count may be negative, as long as their sum, the width, is not.
 
-    The operators give a format that holds every exact result: nothing rounds, nothing overflows.
+    The operators return the format that holds every exact result: nothing rounds, nothing overflows.
 
     Raises
     ------
@@ -56,7 +56,7 @@ class Q:
         return (1 << self.width - self.signed) - 1
 
     def from_bits(self, bits):
-        """The integer that the lowest `width` bits of ``bits`` stand for; all higher bits are ignored."""
+        """Return the integer that the lowest `width` bits of ``bits`` stand for, whatever the higher bits are."""
         sign = self.signed << self.width - 1
         return (bits & (1 << self.width) - 1 ^ sign) - sign
 
@@ -86,7 +86,7 @@ class Q:
 
     @cached_property
     def nameless(self) -> "Q":
-        """The same format, but a number that saturates to it is no fault."""
+        """The same format without a name: a number that saturates to it is no fault."""
         return Q(self.int_bits, self.frac_bits, self.signed)
 
     def __str__(self):
@@ -98,7 +98,7 @@ class Q:
 
     @cache  # noqa: B019 (a handful of formats exist)
     def union(self, other: "Q") -> "Q":
-        """The smallest format that holds the values of both."""
+        """Return the smallest format that holds the values of both."""
         signed = self.signed or other.signed
         magnitude_bits = max(self._magnitude_bits(), other._magnitude_bits())
         return Q(magnitude_bits + signed, max(self.frac_bits, other.frac_bits), signed)
@@ -123,7 +123,7 @@ class Q:
 
     @cache  # noqa: B019 (a handful of formats exist)
     def scale(self, power: int) -> "Q":
-        """The format of the same integer standing for a value ``2**power`` times as large."""
+        """Return the format in which the same integer stands for a value ``2**power`` times as large."""
         return Q(self.int_bits + power, self.frac_bits - power, self.signed)
 
 
@@ -135,17 +135,17 @@ BIT = unsigned(1, 0)
 
 
 def total(formats) -> Q:
-    """The format of an exact sum of numbers in these formats."""
+    """Return the format of an exact sum of numbers in these formats."""
     formats = list(formats)
     both = reduce(Q.union, formats)
     return Q(both.int_bits + (len(formats) - 1).bit_length(), both.frac_bits, both.signed)
 
 
 def smallest(raw: int) -> Q:
-    """The smallest integer format that holds ``raw``."""
+    """Return the smallest integer format that holds ``raw``."""
     return Q((~raw).bit_length() + 1, 0) if raw < 0 else unsigned(max(raw.bit_length(), 1), 0)
 
 
 def count(most: int) -> Q:
-    """The format of a count from 0 to ``most``."""
+    """Return the format of a count from 0 to ``most``."""
     return unsigned(most.bit_length(), 0)
