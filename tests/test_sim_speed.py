@@ -23,7 +23,7 @@ def differences(model, golden):
     """Return the differences of positions by the object's size, of velocities by the largest, and of ratios."""
     largest = np.abs(golden.v).max()
     return (
-        np.abs(model.x - golden.x).max() / golden.scene.load.size,
+        np.abs(model.x - golden.x).max() / golden.scene.size,
         np.abs(model.v - golden.v).max() / largest,
         np.abs(model.a - golden.a).max(),
     )
