@@ -1,4 +1,4 @@
-"""One `run(scene, backend)` for every way to compute a scene."""
+"""Run a scene on any backend, and keep its frames."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from sim.encode.switch import switch
 from sim.results.result import Raw, Result
 
 CHECKS = 10  # steps of a run that a witness computes again, if there are as many frames
-REPORT_EVERY = 200  # steps between two calls of `progress`
+REPORT_EVERY = 200  # steps between two calls of ``progress``
 State = tuple[np.ndarray, ...]
 """x, v, ratio and force of a machine."""
 

@@ -1,4 +1,4 @@
-"""The folder of a run: written by `python -m sim run`, read by what looks at the run later."""
+"""The folder of a run: written by ``python -m sim run``, read by what looks at the run later."""
 
 from __future__ import annotations
 
