@@ -291,15 +291,6 @@ def test_lint_needs_verilator(emitted, out, monkeypatch, capsys):
     assert said(capsys)[1] == [error]
 
 
-def test_lint_passes_on_what_breaks_verilator(tmp_path, monkeypatch):
-    class Done:
-        returncode, stderr = 127, "no such library\n"
-
-    monkeypatch.setattr(lint.subprocess, "run", lambda *args, **kwargs: Done)
-    with pytest.raises(RuntimeError, match="verilator failed: no such library"):
-        lint.lint(tmp_path / VERILOG, top="rheogate")
-
-
 def test_it_is_a_module():
     done = subprocess.run([sys.executable, "-m", "hw"], cwd=ROOT, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "")
