@@ -1,7 +1,8 @@
 """Bytes into the link's parts and out of them, cycle by cycle."""
 
 from hw.blocks.memory import READ_LATENCY
-from hw.link.receive import BYTE_CYCLES, EVENTS
+from hw.link.interfaces import EVENTS
+from hw.link.receive import BYTE_CYCLES
 
 KEY = bytes(range(0xA0, 0xA8))
 
@@ -9,15 +10,15 @@ KEY = bytes(range(0xA0, 0xA8))
 async def feed(ctx, receiver, line: bytes, seen: dict[str, int]):
     """Bytes into a `FrameReceiver`; adds to what it counts."""
     for byte in line:
-        ctx.set(receiver.valid, 1)
-        ctx.set(receiver.data, byte)
+        ctx.set(receiver.received.valid, 1)
+        ctx.set(receiver.received.data, byte)
         for event in EVENTS:
-            seen[event] += ctx.get(getattr(receiver, event))
+            seen[event] += ctx.get(getattr(receiver.events, event))
         await ctx.tick()
-        ctx.set(receiver.valid, 0)
+        ctx.set(receiver.received.valid, 0)
         for _ in range(BYTE_CYCLES - 1):
             for event in EVENTS:
-                seen[event] += ctx.get(getattr(receiver, event))
+                seen[event] += ctx.get(getattr(receiver.events, event))
             await ctx.tick()
 
 

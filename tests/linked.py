@@ -39,11 +39,11 @@ class Linked(wiring.Component):
         m.submodules.device = device = Device(key=KEY, identity=IDENTITY, state=SMALL.formats.state)
         wiring.connect(m, device.port, core)
         m.d.comb += [
-            device.valid.eq(self.valid),
-            device.data.eq(self.data),
-            self.out_valid.eq(device.out_valid),
-            self.out_data.eq(device.out_data),
-            device.out_ready.eq(1),
+            device.received.valid.eq(self.valid),
+            device.received.data.eq(self.data),
+            self.out_valid.eq(device.sent.valid),
+            self.out_data.eq(device.sent.data),
+            device.sent.ready.eq(1),
         ]
         return m
 

@@ -11,8 +11,8 @@ from test_hw_link_device import X, access, hello, read, write
 
 from hw.link.bound import Work, cycles
 from hw.link.frame import LEAST, FrameError, unpacked
+from hw.link.interfaces import EVENTS
 from hw.link.protocol import Status
-from hw.link.receive import EVENTS
 from hw.link.registers import LINK, Link
 from hw.link.send import LOOK
 from hw.map.memory_map import join

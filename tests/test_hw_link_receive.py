@@ -7,7 +7,8 @@ from hw_objects import simulate
 from link_objects import KEY, feed, taken
 
 from hw.link.frame import GREETING, PAYLOAD_MOST, Frame, FrameError, unpacked
-from hw.link.receive import EVENTS, SLOTS, FrameReceiver
+from hw.link.interfaces import EVENTS
+from hw.link.receive import SLOTS, FrameReceiver
 
 
 def received(line: bytes, frames: int):
@@ -115,13 +116,13 @@ def test_a_frame_with_a_broken_byte_is_dropped_and_the_next_one_accepted(port, c
 
     async def bench(ctx):
         await feed(ctx, dut, bad[:6], seen)
-        ctx.set(dut.error, 1)
-        ctx.set(dut.broken, port == "broken")
+        ctx.set(dut.received.error, 1)
+        ctx.set(dut.received.broken, port == "broken")
         for event in EVENTS:
-            seen[event] += ctx.get(getattr(dut, event))
+            seen[event] += ctx.get(getattr(dut.events, event))
         await ctx.tick()
-        ctx.set(dut.error, 0)
-        ctx.set(dut.broken, 0)
+        ctx.set(dut.received.error, 0)
+        ctx.set(dut.received.broken, 0)
         await feed(ctx, dut, (b"" if port == "broken" else bad[6:]) + good, seen)
         assert await taken(ctx, dut) == (2, 1, b"payload")
         assert not ctx.get(dut.frame)

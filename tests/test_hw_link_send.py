@@ -39,11 +39,11 @@ async def line(ctx, dut, rng, slow=0.3) -> bytes:
     sent = []
     while ctx.get(dut.waits):
         ready = rng.random() > slow
-        ctx.set(dut.ready, ready)
-        if ctx.get(dut.valid) and ready:
-            sent.append(ctx.get(dut.data))
+        ctx.set(dut.sent.ready, ready)
+        if ctx.get(dut.sent.valid) and ready:
+            sent.append(ctx.get(dut.sent.data))
         await ctx.tick()
-    ctx.set(dut.ready, 0)
+    ctx.set(dut.sent.ready, 0)
     return bytes(sent)
 
 

@@ -63,10 +63,10 @@ def received(cycles: int, levels: list[int]) -> list[int | str]:
         for level in levels:
             ctx.set(dut.rx, level)
             await ctx.tick()
-            if ctx.get(dut.valid):
-                seen.append(ctx.get(dut.data))
-            if ctx.get(dut.error):
-                seen.append("break" if ctx.get(dut.broken) else "error")
+            if ctx.get(dut.received.valid):
+                seen.append(ctx.get(dut.received.data))
+            if ctx.get(dut.received.error):
+                seen.append("break" if ctx.get(dut.received.broken) else "error")
 
     simulate(dut, bench)
     return seen
@@ -132,9 +132,9 @@ def test_a_transmitter_sends_what_a_line_carries(cycles, rng):
     async def bench(ctx):
         waiting = list(sent)
         for _ in range((len(sent) * 10 + 1) * cycles + 2 * len(sent)):
-            ctx.set(dut.valid, bool(waiting))
-            ctx.set(dut.data, waiting[0] if waiting else 0)
-            if waiting and ctx.get(dut.ready):
+            ctx.set(dut.bytes.valid, bool(waiting))
+            ctx.set(dut.bytes.data, waiting[0] if waiting else 0)
+            if waiting and ctx.get(dut.bytes.ready):
                 waiting.pop(0)
             await ctx.tick()
             levels.append(ctx.get(dut.tx))

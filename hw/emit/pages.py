@@ -28,7 +28,7 @@ def write(p: Parameters, folder: Path) -> None:
 
 
 def header(p: Parameters, about: dict) -> str:
-    """A C header of constants and of what puts addresses together."""
+    """Return a C header with the map's constants and an address macro."""
     link = about["link"]
     constants = [("KEY", "{" + ", ".join(f"0x{byte:02x}" for byte in key(p)) + "}")]
     constants += [(name, size) for name, size in _sizes(p)]
@@ -77,7 +77,7 @@ def header(p: Parameters, about: dict) -> str:
 
 
 def page(p: Parameters, about: dict) -> str:
-    """Markdown tables of the same."""
+    """Return the same as tables in Markdown."""
     link = about["link"]
     sizes = ", ".join(f"{count} {name}" for name, count in _sizes(p))
     parts = [f"# Memory map and link\n\nOf a circuit with {sizes}; key `{key(p).hex()}`."]

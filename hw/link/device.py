@@ -2,14 +2,15 @@
 
 from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib.wiring import In, Out, connect, flipped
 
-from hw.link.emit import Emitter
 from hw.link.frame import ANSWER, HEADER
+from hw.link.interfaces import ByteStream, ReceivedBytes
+from hw.link.item_writer import ItemWriter
 from hw.link.items import Items
 from hw.link.pause import Pause
 from hw.link.protocol import BUSY, WINDOW, Operation, Status
-from hw.link.receive import EVENTS, FrameReceiver
+from hw.link.receive import FrameReceiver
 from hw.link.registers import LINK, LinkRegisters
 from hw.link.send import FrameSender
 from hw.link.walk import Walker
@@ -21,13 +22,8 @@ from hw.map.memory_map import ADDRESS, Region, join
 def members(state: int) -> dict:
     """Return the ports of a device, for words of ``state`` bits."""
     return {
-        "valid": In(1),
-        "data": In(8),
-        "error": In(1),
-        "broken": In(1),
-        "out_valid": Out(1),
-        "out_data": Out(8),
-        "out_ready": In(1),
+        "received": In(ReceivedBytes()),
+        "sent": Out(ByteStream()),
         "port": Out(HostBus(state)),
     }
 
@@ -54,10 +50,8 @@ class Device(wiring.Component):
 
     Members
     -------
-    valid, data, error, broken : In
-        From a `hw.link.uart.Receiver`.
-    out_valid, out_data, out_ready
-        To a `hw.link.uart.Transmitter`.
+    received : In(ReceivedBytes)
+    sent : Out(ByteStream)
     port : Out(HostBus)
     """
 
@@ -71,7 +65,7 @@ class Device(wiring.Component):
         m = Module()
         m.submodules.receiver = self._receiver = receiver = FrameReceiver(self._key)
         m.submodules.sender = self._sender = sender = FrameSender(self._key)
-        m.submodules.emitter = self._emitter = emitter = Emitter(self._items)
+        m.submodules.writer = self._writer = writer = ItemWriter(self._items)
         m.submodules.walker = self._walker = walker = Walker(self._state)
         m.submodules.pauser = self._pauser = pauser = Pause(self._state)
         m.submodules.registers = self._registers = registers = LinkRegisters(self._state)
@@ -84,23 +78,21 @@ class Device(wiring.Component):
             self._accesses.eq(receiver.type == Operation.ACCESS),
         ]
         m.d.comb += [
-            *(getattr(receiver, name).eq(getattr(self, name)) for name in ("valid", "data", "error", "broken")),
-            self.out_valid.eq(sender.valid),
-            self.out_data.eq(sender.data),
-            sender.ready.eq(self.out_ready),
             sender.answer.eq(receiver.seq),
             sender.write_answer.eq(receiver.seq),
             receiver.place.eq(walker.place),
             walker.greets.eq(self._greets),
             walker.length.eq(receiver.length),
             walker.byte.eq(receiver.byte),
-            walker.item_ready.eq(emitter.ready),
+            walker.item_ready.eq(writer.ready),
             pauser.noted.eq(walker.noted),
             pauser.steps.eq(walker.steps),
             pauser.busy.eq(self.port.busy),
             registers.busy.eq(self.port.busy),
-            *(getattr(registers, event).eq(getattr(receiver, event)) for event in EVENTS),
         ]
+        connect(m, flipped(self.received), receiver.received)
+        connect(m, sender.sent, flipped(self.sent))
+        connect(m, receiver.events, registers.frames)
         self._faults = Signal()  # they are asked for
         self._port(m)
         self._commands(m)
@@ -139,7 +131,7 @@ class Device(wiring.Component):
         m.next = "faults"
 
     def _choice(self, m):
-        """What becomes of a command, by its seq."""
+        """Take a command, answer it again or drop it, by its seq."""
         receiver, sender, registers, greets = self._receiver, self._sender, self._registers, self._greets
         self._session = Signal(name="session")
         self._expected = Signal(8, name="expected")
@@ -155,7 +147,7 @@ class Device(wiring.Component):
             free.eq(~sender.waits.bit_select(receiver.seq[: len(sender.answer)], 1)),
         ]
         with m.State("idle"):
-            m.d.comb += [self._emitter.begin.eq(1), self._emitter.at.eq(HEADER.size + self._items.bytes)]
+            m.d.comb += [self._writer.begin.eq(1), self._writer.at.eq(HEADER.size + self._items.bytes)]
             m.d.sync += self._status.eq(Status.DONE)
             with m.If(registers.halt):
                 m.next = "halt"
@@ -222,7 +214,7 @@ class Device(wiring.Component):
 
     def _answering(self, m):
         """Identity, faults and header; what was read stands in the answer already."""
-        receiver, sender, emitter, walker = self._receiver, self._sender, self._emitter, self._walker
+        receiver, sender, writer, walker = self._receiver, self._sender, self._writer, self._walker
         told = Signal(range(len(self._identity) + 1))
         faults = Signal(self._state)
         length = Signal.like(sender.length)
@@ -230,41 +222,41 @@ class Device(wiring.Component):
         heads = Signal()
         number = Signal(range(HEADER.size))
         header = Signal(8)
-        item = Signal.like(emitter.item)
-        identity = Array(Const(part, len(emitter.item)) for part in self._identity)
+        item = Signal.like(writer.item)
+        identity = Array(Const(part, len(writer.item)) for part in self._identity)
         size, payload, status = self._items.bytes, length - HEADER.size, self._status | Mux(self.port.busy, BUSY, 0)
         m.d.comb += [
             item.eq(faults),
-            emitter.valid.eq(walker.item_valid | gives),
-            emitter.item.eq(Mux(gives, item, walker.item)),
-            sender.write.eq(emitter.write | heads),
-            sender.write_place.eq(Mux(heads, number, emitter.place)),
-            sender.write_data.eq(Mux(heads, header, emitter.data)),
+            writer.valid.eq(walker.item_valid | gives),
+            writer.item.eq(Mux(gives, item, walker.item)),
+            sender.write.eq(writer.write | heads),
+            sender.write_place.eq(Mux(heads, number, writer.place)),
+            sender.write_data.eq(Mux(heads, header, writer.data)),
             header.eq(Array([receiver.type | ANSWER, receiver.seq, status, size, payload[:8], payload[8:]])[number]),
         ]
         with m.State("identity"):
             m.d.comb += [item.eq(identity[told]), gives.eq(1)]
-            with m.If(emitter.ready):
+            with m.If(writer.ready):
                 m.d.sync += told.eq(told + 1)
                 with m.If(told == len(self._identity) - 1):
                     m.next = "faults"
         with m.State("faults"):
             m.d.sync += told.eq(0)
-            with m.If(emitter.ready):
+            with m.If(writer.ready):
                 m.d.comb += self._faults.eq(1)
                 m.next = "faulty"
         with m.State("faulty"):
-            m.d.comb += emitter.at.eq(HEADER.size)
+            m.d.comb += writer.at.eq(HEADER.size)
             with m.If(walker.port.answer):
-                m.d.sync += [faults.eq(walker.port.read_data), length.eq(emitter.place), number.eq(0)]
-                m.d.comb += emitter.begin.eq(1)
+                m.d.sync += [faults.eq(walker.port.read_data), length.eq(writer.place), number.eq(0)]
+                m.d.comb += writer.begin.eq(1)
                 m.next = "seal"
         with m.State("seal"):
             m.d.comb += gives.eq(1)
-            with m.If(emitter.ready):
+            with m.If(writer.ready):
                 m.next = "header"
         with m.State("header"):
-            with m.If(emitter.ready):
+            with m.If(writer.ready):
                 m.d.comb += heads.eq(1)
                 m.d.sync += number.eq(number + 1)
                 with m.If(number == HEADER.size - 1):

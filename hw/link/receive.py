@@ -7,15 +7,14 @@ from amaranth.lib.wiring import In, Out
 from hw.blocks.memory import BlockRam
 from hw.link.crc import FrameCrc
 from hw.link.frame import HEADER, KEY_BYTES, LEAST, MOST, PAYLOAD_MOST
+from hw.link.interfaces import FrameEvents, ReceivedBytes
+from hw.machine.interfaces import named
 
 SLOTS = 4
 """Frames there is room for: one that comes, those that wait, one that is worked on."""
 
 BYTE_CYCLES = KEY_BYTES + 6
 """Cycles from a byte to the next, at least: the key has to be gone through, and each comparison has its own cycle."""
-
-EVENTS = "good_frames", "line_errors", "breaks", "cobs_errors", "length_errors", "crc_errors", "overruns"
-"""What may become of the bytes between two zeros; and a break, which is none."""
 
 
 class FrameReceiver(wiring.Component):
@@ -32,28 +31,23 @@ class FrameReceiver(wiring.Component):
 
     Members
     -------
-    valid : In(1), data : In(8)
-        A byte, every `BYTE_CYCLES` at the most.
-    error : In(1), broken : In(1)
-        As of `hw.link.uart.Receiver`.
+    received : In(ReceivedBytes)
+        A byte every `BYTE_CYCLES` at the most.
     frame : Out(1), type : Out(8), seq : Out(8), length : Out
         There is a frame: its header.
     place : In, byte : Out(8)
         A byte of its payload, `hw.blocks.memory.READ_LATENCY` cycles after its place.
     take : In(1)
         The frame has been worked on. Only while ``frame``; the next comes two cycles later.
-    <event> : Out(1)
-        For one cycle, the second after the byte or the break.
+    events : Out(FrameEvents)
+        In the second cycle after the byte or the break.
     """
 
     def __init__(self, key: bytes):
         self._key = key
         super().__init__(
             {
-                "valid": In(1),
-                "data": In(8),
-                "error": In(1),
-                "broken": In(1),
+                "received": In(ReceivedBytes()),
                 "frame": Out(1),
                 "type": Out(8),
                 "seq": Out(8),
@@ -61,7 +55,7 @@ class FrameReceiver(wiring.Component):
                 "place": In(range(PAYLOAD_MOST)),
                 "byte": Out(8),
                 "take": In(1),
-                **{event: Out(1) for event in EVENTS},
+                "events": Out(FrameEvents()),
             }
         )
 
@@ -73,11 +67,11 @@ class FrameReceiver(wiring.Component):
         broken = Signal()
         ends = Signal()
         m.d.sync += [
-            valid.eq(self.valid),
-            data.eq(self.data),
-            error.eq(self.error),
-            broken.eq(self.broken),
-            ends.eq(self.valid & (self.data == 0) | self.broken),
+            valid.eq(self.received.valid),
+            data.eq(self.received.data),
+            error.eq(self.received.error),
+            broken.eq(self.received.broken),
+            ends.eq(self.received.valid & (self.received.data == 0) | self.received.broken),
         ]
         decoded, byte, open_block = self._decode(m, valid, data, ends)
         count = Signal(range(MOST + 2))  # of decoded bytes; one more than there may be stands for all beyond
@@ -109,15 +103,16 @@ class FrameReceiver(wiring.Component):
             ("crc_errors", bad_crc),
             ("overruns", lost),
         )
-        m.d.sync += [*(getattr(self, event).eq(0) for event in EVENTS), self.breaks.eq(broken)]
+        events = named(self.events)
+        m.d.sync += [*(event.eq(0) for event in events.values()), self.events.breaks.eq(broken)]
         with m.If(ends & some):
             with m.If(verdicts[0][1]):
-                m.d.sync += self.line_errors.eq(1)
+                m.d.sync += self.events.line_errors.eq(1)
             for event, applies in verdicts[1:]:
                 with m.Elif(applies):
-                    m.d.sync += getattr(self, event).eq(1)
+                    m.d.sync += events[event].eq(1)
             with m.Else():
-                m.d.sync += self.good_frames.eq(1)
+                m.d.sync += self.events.good_frames.eq(1)
         return m
 
     def _decode(self, m, valid, data, ends):
@@ -172,9 +167,9 @@ class FrameReceiver(wiring.Component):
             payloads.write_address.eq(Cat(place[: len(self.place)], coming)),
             payloads.write_data.eq(byte),
         ]
-        with m.If(self.good_frames):
+        with m.If(self.events.good_frames):
             m.d.sync += [Array(kept)[coming].eq(Cat(header[0], header[1], header[4], header[5])), coming.eq(coming + 1)]
-        m.d.sync += [waiting.eq(waiting + self.good_frames - self.take), worked.eq(worked + self.take)]
+        m.d.sync += [waiting.eq(waiting + self.events.good_frames - self.take), worked.eq(worked + self.take)]
         with m.If(self.take):
             m.d.sync += self.frame.eq(0)
         with m.Elif(~self.frame & (waiting != 0)):

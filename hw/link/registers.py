@@ -6,7 +6,8 @@ from amaranth.hdl import Array, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from hw.link.receive import EVENTS
+from hw.link.interfaces import EVENTS, FrameEvents
+from hw.machine.interfaces import named
 from hw.map.memory_map import ADDRESS, Region
 
 LINK = len(Region)
@@ -62,8 +63,8 @@ class LinkRegisters(wiring.Component):
     request, write : In(1), index : In, data : In
     answer, error : Out(1), read_data : Out
         An error is no such register, or more than `BITS` bits for it: nothing is changed.
-    <counter> : In(1)
-        It happens in this cycle; but ``halts``.
+    frames : In(FrameEvents), duplicates : In(1), gaps : In(1)
+        What is counted happens in this cycle.
     halted : In(1)
         The run was ended.
     busy : In(1)
@@ -72,7 +73,6 @@ class LinkRegisters(wiring.Component):
     """
 
     def __init__(self, state: int):
-        events = [counter.name.lower() for counter in COUNTERS if counter != Link.HALTS]
         super().__init__(
             {
                 "request": In(1),
@@ -82,7 +82,9 @@ class LinkRegisters(wiring.Component):
                 "answer": Out(1),
                 "error": Out(1),
                 "read_data": Out(state),
-                **dict.fromkeys(events, In(1)),
+                "frames": In(FrameEvents()),
+                "duplicates": In(1),
+                "gaps": In(1),
                 "halted": In(1),
                 "busy": In(1),
                 "halt": Out(1),
@@ -111,14 +113,15 @@ class LinkRegisters(wiring.Component):
         most = registers[Link.WATCHDOG]
         with m.If(writes[Link.WATCHDOG]):
             m.d.sync += most.eq(data)
+        happens = {"halts": self.halted, "duplicates": self.duplicates, "gaps": self.gaps, **named(self.frames)}
         for counter in COUNTERS:
-            happens = self.halted if counter == Link.HALTS else getattr(self, counter.name.lower())
-            m.d.sync += registers[counter].eq(Mux(writes[counter], 0, registers[counter] + happens))
+            count = registers[counter]
+            m.d.sync += count.eq(Mux(writes[counter], 0, count + happens[counter.name.lower()]))
         silence = Signal(BITS)
         over = Signal()
         ended = Signal()
         m.d.sync += [silence.eq(silence + 1), over.eq((silence >= most) & (most != 0))]
-        with m.If(self.good_frames | writes[Link.WATCHDOG] | ~self.busy):
+        with m.If(self.frames.good_frames | writes[Link.WATCHDOG] | ~self.busy):
             m.d.sync += [silence.eq(0), over.eq(0)]
         with m.If(self.halted | ~self.busy):  # once a run: it takes until its step is over
             m.d.sync += ended.eq(self.busy)

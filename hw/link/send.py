@@ -7,6 +7,7 @@ from amaranth.lib.wiring import In, Out
 from hw.blocks.memory import READ_LATENCY, BlockRam
 from hw.link.crc import FrameCrc
 from hw.link.frame import CRC_BYTES
+from hw.link.interfaces import ByteStream
 
 ANSWERS = 8
 """Answers that are kept: as many as commands may be under way."""
@@ -42,8 +43,8 @@ class FrameSender(wiring.Component):
         once. The same answer not in two cycles behind one another.
     waits : Out(8)
         A bit for each answer: it is yet to be sent, or is being sent; from two cycles after ``send`` on.
-    valid : Out(1), data : Out(8), ready : In(1)
-        The line's bytes, as to a `hw.link.uart.Transmitter`.
+    sent : Out(ByteStream)
+        The line's bytes.
     """
 
     def __init__(self, key: bytes):
@@ -58,9 +59,7 @@ class FrameSender(wiring.Component):
                 "answer": In(range(ANSWERS)),
                 "length": In(range(ANSWER_MOST + 1)),
                 "waits": Out(ANSWERS),
-                "valid": Out(1),
-                "data": Out(8),
-                "ready": In(1),
+                "sent": Out(ByteStream()),
             }
         )
 
@@ -110,8 +109,8 @@ class FrameSender(wiring.Component):
         ]
 
         def give(value, following):
-            m.d.comb += [self.valid.eq(1), self.data.eq(value)]
-            with m.If(self.ready):
+            m.d.comb += [self.sent.valid.eq(1), self.sent.data.eq(value)]
+            with m.If(self.sent.ready):
                 m.next = following
 
         with m.FSM():
@@ -141,7 +140,7 @@ class FrameSender(wiring.Component):
             with m.State("bytes"):
                 with m.If(here & ~at_end):
                     give(byte, "bytes")
-                    with m.If(self.ready):
+                    with m.If(self.sent.ready):
                         m.d.sync += look(place + 1)
                 with m.Elif(here):
                     m.next = "block"
@@ -153,7 +152,7 @@ class FrameSender(wiring.Component):
                         m.d.sync += [begin.eq(end + 1), *look(end + 1)]
             with m.State("back"):
                 give(0, "idle")
-                m.d.comb += sent.eq(self.ready)
+                m.d.comb += sent.eq(self.sent.ready)
         return m
 
     def _queue(self, m, sent):

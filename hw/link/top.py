@@ -60,13 +60,11 @@ class Linked(wiring.Component):
         m.submodules.receiver = receiver = Receiver(self._bit_cycles)
         m.submodules.transmitter = transmitter = Transmitter(self._bit_cycles)
         wiring.connect(m, device.port, core)
+        wiring.connect(m, receiver.received, device.received)
+        wiring.connect(m, device.sent, transmitter.bytes)
         m.d.comb += [
             receiver.rx.eq(self.rx),
             self.tx.eq(transmitter.tx),
             self.busy.eq(core.busy),
-            transmitter.valid.eq(device.out_valid),
-            transmitter.data.eq(device.out_data),
-            device.out_ready.eq(transmitter.ready),
-            *(getattr(device, name).eq(getattr(receiver, name)) for name in ("valid", "data", "error", "broken")),
         ]
         return m

@@ -5,6 +5,8 @@ from amaranth.lib import wiring
 from amaranth.lib.cdc import FFSynchronizer
 from amaranth.lib.wiring import In, Out
 
+from hw.link.interfaces import ByteStream, ReceivedBytes
+
 BAUD_LEAST, BAUD_MOST = 115_200, 3_000_000
 LEAST_CYCLES = 8
 """Cycles a bit needs: its three votes have to be taken near its middle."""
@@ -53,19 +55,15 @@ class Receiver(wiring.Component):
     -------
     rx : In(1)
         The line, 1 when idle; asynchronous.
-    valid : Out(1), data : Out(8)
-        A byte has come, for one cycle.
-    error : Out(1)
-        For one cycle: a byte without its stop bit. Nothing is taken for a start bit until the line is idle again.
-    broken : Out(1)
-        With ``error``: all of its bits were 0, a break.
+    received : Out(ReceivedBytes)
+        After an error nothing is taken for a start bit until the line is idle again.
     """
 
     def __init__(self, cycles: int):
         if cycles < LEAST_CYCLES:
             raise ValueError(f"cycles must be at least {LEAST_CYCLES}, not {cycles!r}")
         self._cycles = cycles
-        super().__init__({"rx": In(1), "valid": Out(1), "data": Out(8), "error": Out(1), "broken": Out(1)})
+        super().__init__({"rx": In(1), "received": Out(ReceivedBytes())})
 
     def elaborate(self, platform):
         m = Module()
@@ -77,7 +75,7 @@ class Receiver(wiring.Component):
         samples = Signal(2)
         bits = Signal(range(10))
         majority = (samples & line.replicate(2)).any() | samples.all()
-        m.d.sync += [self.valid.eq(0), self.error.eq(0), place.eq(place + 1)]
+        m.d.sync += [self.received.valid.eq(0), self.received.error.eq(0), place.eq(place + 1)]
         with m.If(place == self._cycles - 1):
             m.d.sync += place.eq(0)
         with m.If(Cat(place == vote for vote in votes[:2]).any()):
@@ -93,14 +91,14 @@ class Receiver(wiring.Component):
                     with m.If((bits == 0) & majority):
                         m.next = "idle"
                     with m.Elif(bits == 9):
-                        m.d.sync += [self.valid.eq(majority), self.error.eq(~majority)]
-                        m.d.sync += self.broken.eq(~majority & ~self.data.any())
+                        m.d.sync += [self.received.valid.eq(majority), self.received.error.eq(~majority)]
+                        m.d.sync += self.received.broken.eq(~majority & ~self.received.data.any())
                         with m.If(majority):
                             m.next = "idle"
                         with m.Else():
                             m.next = "wait"
                     with m.Elif(bits != 0):
-                        m.d.sync += self.data.eq(Cat(self.data[1:], majority))
+                        m.d.sync += self.received.data.eq(Cat(self.received.data[1:], majority))
             with m.State("wait"):
                 with m.If(line):
                     m.next = "idle"
@@ -112,14 +110,14 @@ class Transmitter(wiring.Component):
 
     Members
     -------
-    valid : In(1), data : In(8), ready : Out(1)
-        A byte is taken in a cycle in which both are 1, and then is on the line for 10 times ``cycles``.
+    bytes : In(ByteStream)
+        A byte that is taken is on the line for 10 times ``cycles``.
     tx : Out(1)
     """
 
     def __init__(self, cycles: int):
         self._cycles = cycles
-        super().__init__({"valid": In(1), "data": In(8), "ready": Out(1), "tx": Out(1, init=1)})
+        super().__init__({"bytes": In(ByteStream()), "tx": Out(1, init=1)})
 
     def elaborate(self, platform):
         m = Module()
@@ -127,9 +125,9 @@ class Transmitter(wiring.Component):
         rest = Signal(9)
         place = Signal(range(self._cycles))
         busy = Signal()
-        m.d.comb += self.ready.eq(~busy)
-        with m.If(self.valid & self.ready):
-            m.d.sync += [busy.eq(1), rest.eq(Cat(self.data, 1)), self.tx.eq(0), place.eq(0)]
+        m.d.comb += self.bytes.ready.eq(~busy)
+        with m.If(self.bytes.valid & self.bytes.ready):
+            m.d.sync += [busy.eq(1), rest.eq(Cat(self.bytes.data, 1)), self.tx.eq(0), place.eq(0)]
         with m.If(busy):
             m.d.sync += place.eq(place + 1)
             with m.If(place == self._cycles - 1):

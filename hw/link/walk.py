@@ -32,7 +32,7 @@ class Walker(wiring.Component):
     greets : In(1), length : In, place : Out, byte : In(8)
         The payload, as of a `hw.link.receive.FrameReceiver`.
     item_valid : Out(1), item : Out, item_ready : In(1)
-        To a `hw.link.emit.Emitter`.
+        To a `hw.link.item_writer.ItemWriter`.
     noted : Out(1), steps : Out(32)
         A run was begun, of so many steps, or ended (0).
     port : Out(HostAccess)

@@ -1,4 +1,4 @@
-"""A circuit behind its link, with the face of the simulated one (`sim.backends.simulated_circuit.SimulatedCircuit`)."""
+"""A circuit behind its link, used like the simulated one (`sim.backends.simulated_circuit.SimulatedCircuit`)."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from hw.map.control import MAGIC, Control
 from hw.map.memory_map import Map, Region, join
 from sim.backends.link import segments
 from sim.backends.link.errors import CommandRefused, LinkError, OtherCircuit
-from sim.backends.link.line import SerialLine
+from sim.backends.link.line import Line, SerialLine
 from sim.backends.link.session import TIMEOUT, Session
 
 BAUD = 1_000_000
 POLL = 1e-3
-"""s between two questions whether a run is over."""
+"""Seconds between two requests that ask whether a run is over."""
 
 
 class Board:
@@ -30,18 +30,16 @@ class Board:
 
     Parameters
     ----------
-    line
-        With ``url``, ``write(bytes)``, ``read(seconds)`` and ``close()``: `sim.backends.link.line.SerialLine`; see
-        `at`.
+    line : Line
+        See `at`.
     timeout : float
-        s; see `sim.backends.link.session.Session`.
     clock : callable
-        s; a simulated line has a time of its own.
+        See `sim.backends.link.session.Session`.
 
     Attributes
     ----------
     parameters : Parameters
-        What the circuit says it is.
+        The circuit's, from its identity.
     faults : list of str
         Names of the bits of its sticky faults.
     session : Session
@@ -52,7 +50,7 @@ class Board:
         See `sim.backends.link.errors`; the first two by every other method as well.
     """
 
-    def __init__(self, line, timeout: float = TIMEOUT, clock: Callable[[], float] = monotonic):
+    def __init__(self, line: Line, timeout: float = TIMEOUT, clock: Callable[[], float] = monotonic):
         self._line = line
         try:
             self.session = Session(line, lambda identity: _key(line.url, identity), timeout, clock=clock)
@@ -65,7 +63,7 @@ class Board:
 
     @classmethod
     def at(cls, url: str, baud: int = BAUD, timeout: float = TIMEOUT) -> Board:
-        """The circuit at a port: any that pyserial opens, ``/dev/ttyUSB0``, ``socket://127.0.0.1:5000``."""
+        """Return the circuit at a port that pyserial opens: ``/dev/ttyUSB0``, ``socket://127.0.0.1:5000``."""
         return cls(SerialLine(url, baud), timeout)
 
     def close(self):
@@ -85,7 +83,7 @@ class Board:
             pass
 
     def read(self, addresses: list[int]) -> np.ndarray:
-        """(n,) unsigned words. Raises `CommandRefused` if a read is refused."""
+        """Return (n,) unsigned words. Raises `CommandRefused` if a read is refused."""
         words = [word for payload in self._ask(segments.reads(addresses, self.session.items)) for word in payload]
         return np.array(words, np.uint64)
 
@@ -112,7 +110,7 @@ class Board:
             sleep(POLL)
 
     def halt(self):
-        """End a run that an earlier host began."""
+        """End a run that an earlier host began, if there is one."""
         if self.run():
             self.write([(self._control(Control.STOP), 1)])
             self.wait()
@@ -122,12 +120,12 @@ class Board:
         return self._ask(payloads, Operation.EXCHANGE)
 
     def counters(self) -> dict[str, int]:
-        """The link's registers, by name."""
+        """Return the link's registers by name."""
         words = self.read([join(LINK, 0, register, 0) for register in Link])
         return {register.name.lower(): int(word) for register, word in zip(Link, words, strict=True)}
 
     def watch(self, seconds: float):
-        """Let runs end when nothing is heard of the host for so long; 0: never."""
+        """Let a run end after so many seconds without a good frame from the host; 0: never."""
         self.write([(join(LINK, 0, Link.WATCHDOG, 0), round(seconds * self.session.identity.clock_hz))])
 
     def _checked(self, writes) -> list[tuple[int, int]]:
@@ -138,7 +136,7 @@ class Board:
         return pairs
 
     def _ask(self, payloads, operation=Operation.ACCESS):
-        """Answers' items behind the faults."""
+        """Return each answer's items after the faults."""
         for answer in self.session.commands((operation, payload) for payload in payloads):
             yield self.session.items.split(self._good(answer).payload)[1:]
 
@@ -155,7 +153,7 @@ class Board:
 
 
 def _key(url: str, identity: Identity) -> bytes:
-    """The key of a circuit that is one of ours. Raises `OtherCircuit` if it isn't."""
+    """Return the key of a circuit of this version. Raises `OtherCircuit` if it isn't."""
     try:
         if identity.magic != MAGIC:
             raise ValueError(f"magic must be {MAGIC:#x}, not {identity.magic:#x}")

@@ -1,10 +1,33 @@
-"""Bytes over any port that pyserial can open."""
+"""A line to a circuit: bytes both ways, over any port that pyserial can open."""
 
 from __future__ import annotations
+
+from typing import Protocol
 
 import serial
 
 from sim.backends.link.errors import LineBroken
+
+
+class Line(Protocol):
+    """Bytes to and from a circuit: `SerialLine`, or a simulated one.
+
+    Attributes
+    ----------
+    url : str
+        Its name, for messages.
+    """
+
+    url: str
+
+    def write(self, data: bytes) -> None:
+        """Send bytes. Raises `LineBroken` if the line is gone."""
+
+    def read(self, seconds: float) -> bytes:
+        """Return the bytes that came, waiting for the first at most so long. Raises `LineBroken`."""
+
+    def close(self) -> None:
+        """Let go of the line."""
 
 
 class SerialLine:
@@ -33,6 +56,7 @@ class SerialLine:
             ) from None
 
     def write(self, data: bytes) -> None:
+        """Send bytes."""
         self._checked(self._port.write, data)
 
     def read(self, seconds: float) -> bytes:

@@ -1,4 +1,4 @@
-"""Commands to a device and their answers, each done exactly once and in order, whatever the line loses."""
+"""A session with a circuit: commands and answers, each done exactly once and in order, whatever the line loses."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from hw.link.identity import Identity
 from hw.link.items import LEAST, Items
 from hw.link.protocol import GREETING_BYTES, WINDOW, Operation, Status
 from sim.backends.link.errors import NoAnswer, OtherCircuit
+from sim.backends.link.line import Line
 
 TIMEOUT = 2.0
-"""Seconds without a good answer after which what is under way is sent again."""
+"""Seconds without a good answer after which the commands under way are sent again."""
 ATTEMPTS = 6
 NO_KEY = bytes(KEY_BYTES)
 Command = tuple[Operation, bytes]
@@ -25,15 +26,14 @@ class Session:
 
     Parameters
     ----------
-    line
-        With ``write(bytes)`` and ``read(seconds)``: `sim.backends.link.line.SerialLine`.
+    line : Line
     key_of : callable
-        The key of the circuit that says who it is.
+        Return the key of the circuit with an identity.
     timeout : float
-        s.
+        Seconds until the commands under way are sent again.
     attempts : int
     clock : callable
-        s; a simulated line has a time of its own.
+        Seconds; a simulated line has a time of its own.
 
     Attributes
     ----------
@@ -41,21 +41,21 @@ class Session:
     items : Items
         As the circuit takes and gives them.
     retries : int
-        Times that what was under way had to be sent again.
+        How often the commands under way were sent again.
     damaged : int
-        Frames that came and were none.
+        Damaged frames that came.
 
     Raises
     ------
     NoAnswer
-        If so many tries in a row bring nothing; also by `commands`.
+        If so many attempts in a row bring no answer; also raised by `commands`.
     OtherCircuit
-        If who answers speaks another version.
+        If the circuit has another version of the protocol.
     """
 
     def __init__(
         self,
-        line,
+        line: Line,
         key_of: Callable[[Identity], bytes],
         timeout: float = TIMEOUT,
         attempts: int = ATTEMPTS,
@@ -68,7 +68,7 @@ class Session:
         self._key = key_of(self.identity)
 
     def commands(self, wanted: Iterable[Command]) -> Iterator[Frame]:
-        """The answers, in order, as they come; the next commands are under way already."""
+        """Return the answers, in order, as they come; the next commands are under way already."""
         wanted, under_way = iter(wanted), deque()
         more = True
         while more or under_way:
@@ -84,7 +84,7 @@ class Session:
                 yield self._answered(under_way)
 
     def _answered(self, under_way) -> Frame:
-        """The answer to the first of what is under way."""
+        """Return the answer to the first command under way."""
         for _ in range(self._attempts):
             until = self._clock() + self._timeout
             while (left := until - self._clock()) > 0:
@@ -95,13 +95,13 @@ class Session:
             self.retries += 1
             self._send(under_way)
         raise NoAnswer(
-            f"--port must lead to a circuit that answers, but {getattr(self._line, 'url', 'it')} was silent "
+            f"--port must lead to a circuit that answers, but {self._line.url} was silent "
             f"for {self._attempts * self._timeout:.3g} s ({self.damaged} damaged frames came): it must be "
             "loaded (make flash) and have the rate of --baud"
         )
 
     def _greet(self) -> Identity:
-        """Begin a session: whatever was before it is over, on the line too."""
+        """Begin a session. An earlier one is over, and so is a frame that was begun on the line."""
         nonce = secrets.randbits(8 * LEAST)
         self._seq = secrets.randbits(8)
         greeting = self._frame(Operation.HELLO, nonce.to_bytes(GREETING_BYTES, "little"))
@@ -131,7 +131,7 @@ class Session:
             self._line.write(b"".join(frame.packed(self._key) for frame in frames))
 
     def _frame_from_line(self, seconds: float) -> Frame | None:
-        """The next good frame, if one comes in time."""
+        """Return the next good frame, if one comes in time."""
         until = self._clock() + seconds
         while True:
             while (end := self._buffer.find(0)) >= 0:

@@ -1,4 +1,4 @@
-"""Items into an answer."""
+"""Write items into an answer."""
 
 from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import wiring
@@ -8,8 +8,8 @@ from hw.link.items import Items
 from hw.link.send import ANSWER_MOST
 
 
-class Emitter(wiring.Component):
-    """Writes items one behind the other, lowest byte first: one in as many cycles as it has bytes, and one more.
+class ItemWriter(wiring.Component):
+    """Writes items one after another, lowest byte first: one in as many cycles as it has bytes, and one more.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Emitter(wiring.Component):
     valid : In(1), item : In, ready : Out(1)
         An item is taken in a cycle in which both are 1. While ``ready``, all that were taken have been written.
     write : Out(1), place : Out, data : Out(8)
-        A byte of the answer. While ``ready``, ``place`` is that behind the last item.
+        A byte of the answer. While ``ready``, ``place`` is the one after the last item.
     """
 
     def __init__(self, items: Items):
