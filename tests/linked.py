@@ -70,7 +70,7 @@ class Line:
         self._delete(self._handle)
 
     def send(self, line: bytes, cycles: int) -> bytes:
-        """What comes out while these bytes go in, and so many cycles after."""
+        """Return the bytes that come out while these go in, and for so many cycles after."""
         out = ctypes.create_string_buffer(ROOM)
         came = self._run(self._handle, line, len(line), BYTE_CYCLES, cycles, out, ROOM)
         assert came <= ROOM

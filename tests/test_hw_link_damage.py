@@ -84,7 +84,7 @@ def answered(words: int) -> int:
 
 
 def told(coded: bytes) -> str:
-    """What the circuit has to count, for what stands between two zeros."""
+    """Return the event that the circuit has to count for the bytes between two zeros."""
     try:
         unpacked(coded, KEY)
     except FrameError as error:
@@ -93,7 +93,7 @@ def told(coded: bytes) -> str:
 
 
 def campaign(seed: int, frames: int) -> Counter:
-    """What so many damaged frames were counted as; raises AssertionError if any of it isn't as it should be."""
+    """Return how often each event was counted for so many damaged frames, after checking every good answer."""
     r, line, expected = random.Random(seed), Line(), Counter({"good_frames": 1})
     words, counters = read(X, WORDS), read(join(LINK, 0, COUNTERS[0], 0), len(COUNTERS))
     line.exchange(hello(0))

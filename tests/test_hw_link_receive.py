@@ -12,7 +12,7 @@ from hw.link.receive import SLOTS, FrameReceiver
 
 
 def received(line: bytes, frames: int):
-    """What a receiver counts when it gets these bytes, and its first frames."""
+    """Return the events that a receiver counts for these bytes, and its first frames."""
     dut, seen, got = FrameReceiver(KEY), Counter(), []
 
     async def bench(ctx):

@@ -1,4 +1,4 @@
-"""What is sent is COBS of the answer and its CRC: the cobs package and zlib read it."""
+"""Frames that are sent are COBS of the answer and its CRC: the cobs package and zlib read them."""
 
 import pytest
 from hw_objects import simulate

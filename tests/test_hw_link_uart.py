@@ -56,7 +56,7 @@ def line_of(byte: int, stop: int = 1) -> list[int]:
 
 
 def received(cycles: int, levels: list[int]) -> list[int | str]:
-    """What a receiver makes of the line's level in each cycle: bytes, "error", "break"."""
+    """Return what a receiver reads from the line's level in each cycle: bytes, "error", "break"."""
     dut, seen = Receiver(cycles), []
 
     async def bench(ctx):
@@ -90,7 +90,7 @@ def test_bytes_arrive_at_a_rate_that_is_off_by_two_percent(cycles, off, rng):
 @pytest.mark.campaign
 @pytest.mark.parametrize("cycles", [LEAST_CYCLES, 41])
 def test_how_much_a_rate_may_be_off(cycles, rng, figure):
-    """Of bytes one behind the other, in steps of half a per cent."""
+    """For bytes without a pause between them, in steps of half a per cent."""
     sent = [0x00, 0xFF, 0x55, 0xAA, *(int(b) for b in rng.integers(0, 256, 20))]
     bits = [bit for byte in sent for bit in line_of(byte)]
 
