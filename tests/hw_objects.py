@@ -40,8 +40,7 @@ class Piped(wiring.Component):
     def __init__(self, graph: Graph, cost: Cost):
         self._graph, self._schedule = graph, Schedule(graph, cost)
         self.latency = self._schedule.latency
-        saturating = {node.fmt.name for node in graph.operations if node.kind in ("round", "shift_right")}
-        self.faults = sorted((saturating | {name for name, _ in graph.faults}) - {""})
+        self.faults = graph.fault_names
         super().__init__(
             {
                 "valid": In(1),

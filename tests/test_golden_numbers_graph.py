@@ -203,3 +203,14 @@ def test_integers_and_bits_become_operations():
     assert (3 - x).operands[0].fmt == Q(2, 0, signed=False)
     assert (x < 0).fmt == BIT
     assert (x < 0).select(0, x).fmt == x.fmt and (x < 0).select(x, 0).fmt == x.fmt
+
+
+def test_a_graph_knows_its_faults():
+    graph = Graph()
+    x = graph.input("x", Q(4, 0))
+    negative = x < 0
+    negative.fault("x is negative")
+    rounded, shifted = x.to(Q(3, 0, name="small")), x.to(Q(2, 0, name="shifted"), right=graph.const(1, BIT))
+    quantities = {"a": rounded, "b": shifted, "silent": x.to(Q(1, 0)), "negative": negative}
+    graph.name_and_prune(quantities, ["a", "b", "silent"])
+    assert graph.fault_names == ["shifted", "small", "x is negative"]

@@ -125,6 +125,12 @@ class Graph:
     faults: list[tuple[str, Operation]] = field(default_factory=list)
     axes: tuple[str, ...] = AXES
 
+    @property
+    def fault_names(self) -> list[str]:
+        """The names of all faults that the graph can report, sorted."""
+        saturating = {x.fmt.name for x in self.operations if x.kind in ("round", "shift_right")}
+        return sorted((saturating | {name for name, _ in self.faults}) - {""})
+
     def add(self, kind, fmt, operands=(), detail=None, name="") -> Operation:
         operation = Operation(self, kind, fmt, tuple(operands), detail, name)
         self.operations.append(operation)

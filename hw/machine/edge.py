@@ -45,7 +45,7 @@ class EdgeDatapath:
     @cached_property
     def faults(self) -> list[str]:
         """The names of all faults that the datapath can report, sorted."""
-        return fault_names(self.graph)
+        return self.graph.fault_names
 
     def ready(self, output: str) -> int:
         """Return the cycle in which an output is valid, counted from that of the nodes; it comes from a register."""
@@ -146,9 +146,3 @@ class EdgeProcessor(wiring.Component):
             return self.table_word
 
         return lookup
-
-
-def fault_names(graph) -> list[str]:
-    """Return the names of all faults that a graph can report, sorted."""
-    saturating = {node.fmt.name for node in graph.operations if node.kind in {"round", "shift_right"}}
-    return sorted((saturating | {name for name, _ in graph.faults}) - {""})

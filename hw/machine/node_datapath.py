@@ -6,7 +6,6 @@ from golden.datapath.formats import Formats
 from golden.datapath.graphs import node_graph
 from golden.numbers.graph import AXES, IN_TURN
 from hw.machine.accumulator import READ
-from hw.machine.edge import fault_names
 from hw.pipeline.cost import Cost
 from hw.pipeline.schedule import Schedule
 
@@ -39,7 +38,7 @@ class NodeDatapath:
     @cached_property
     def faults(self) -> list[str]:
         """The names of all faults that the datapath can report, sorted."""
-        return fault_names(self.graph)
+        return self.graph.fault_names
 
     @property
     def done(self) -> int:

@@ -19,7 +19,7 @@ def sources(fmt: Formats) -> tuple[dict[str, str], list[str]]:
         If a number of the datapath does not fit an int64.
     """
     edge, node = edge_graph(fmt, tables=1), node_graph(fmt, banks=1)  # the text is the same for any number of tables
-    faults = sorted(_faults(edge) | _faults(node))
+    faults = sorted({*edge.fault_names, *node.fault_names})
     material, inverse_mass = records.material(fmt, tables=1), records.inverse_mass(fmt)
     stages = [RK4.stage(s) for s in range(RK4.stages)]
     common = {"velocity_shift": "common.velocity_shift"} | {f"stage_{bit}": f"stage_{bit}[stage]" for bit in stages[0]}
@@ -43,11 +43,6 @@ def sources(fmt: Formats) -> tuple[dict[str, str], list[str]]:
         "node.inc": _Program(node, node_variables, faults).text,
     }
     return files, faults
-
-
-def _faults(graph: Graph) -> set[str]:
-    rounded = {operation.fmt.name for operation in graph.operations if operation.kind in ("round", "shift_right")}
-    return rounded - {""} | {name for name, _ in graph.faults}
 
 
 def _vector(name: str, variable: str) -> dict[str, str]:
