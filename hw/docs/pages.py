@@ -5,7 +5,7 @@ from hw.parameters import Parameters
 
 PAGES = {
     "README.md": ("boards",),
-    "docs/circuit.md": ("formats", "latency", "memory map", "registers"),
+    "docs/circuit.md": ("formats", "quantities", "latency", "memory map", "registers"),
     "docs/boards.md": ("timing", "builds"),
 }
 """By path, the tables of a page; each stands between two markers."""

@@ -1,6 +1,6 @@
 """The tables of README.md and docs/ that follow from the code, as Markdown."""
 
-from golden.datapath import formats
+from golden.datapath import formats, quantities
 from hw.boards import board as boards
 from hw.boards import tables
 from hw.boards.result import Build, Timing, published
@@ -12,6 +12,10 @@ from hw.parameters import Parameters
 
 def format_table(parameters: Parameters) -> str:
     return formats.table(parameters.formats)
+
+
+def quantity_table(parameters: Parameters) -> str:
+    return quantities.table()
 
 
 def latency_table(parameters: Parameters) -> str:
@@ -48,6 +52,7 @@ def board_table(parameters: Parameters) -> str:
 
 TABLES = {
     "formats": format_table,
+    "quantities": quantity_table,
     "latency": latency_table,
     "memory map": memory_table,
     "registers": register_table,
