@@ -19,7 +19,7 @@ def edge_memories(m, lines, p, datapath, issued, outputs, host) -> dict:
     """
 
     def by_host(value, name):
-        return lines.later(value, HANDOVER - 1, name=name, reset=True)
+        return lines.later(value, HANDOVER - PORT, name=name, reset=True)
 
     active = by_host(host.active, "host_active")
     index, data = by_host(host.index, "host_index"), by_host(host.data, "host_data")

@@ -159,7 +159,7 @@ class NodePipeline:
             rams[component] = force = BlockRam(width=self._formats.state, depth=self._depth)
             self._m.submodules[name] = force
             self._write(name, force, own=(self.later(self._item.valid, done), pipe.output(name, done)))
-            self._m.d.sync += force.address.eq(self._host_address)
+            registered_ports(self._m, force, name, self._active, Use(address=self._host_address), Use())
         return rams
 
     def _write_states(self, pipe, rams):
