@@ -37,6 +37,8 @@ class Size:
     meaning : str
         For help, manifest and documentation.
     default : int
+    small : int
+        Its value in the smallest circuit, which is placed in minutes.
     allowed : range or tuple of int
         A range without steps, or the few values that there are.
     letter : str
@@ -47,16 +49,20 @@ class Size:
         A board's file may leave it out, and then has the default.
     column : bool
         Shown in tables of boards.
+    brief : bool
+        Shown in the README's short table too.
     """
 
     name: str
     meaning: str
     default: int
+    small: int
     allowed: range | tuple[int, ...]
     letter: str
     held: Constant | None = None
     optional: bool = False
     column: bool = False
+    brief: bool = False
 
     @property
     def choice(self) -> str:
@@ -84,21 +90,31 @@ def _upto(most: int, least: int = 1) -> range:
 SIZES: dict[str, Size] = {
     size.name: size
     for size in (
-        Size("lanes", "edge processors", 4, _upto(NODE["mask"].width // 2), "P", column=True),
-        Size("updates", "nodes updated per cycle", 1, _upto(2), "M", column=True),
-        Size("nodes", "capacity: nodes", 512, _upto(EDGE["i"].raw_max + 1, least=2), "N", column=True),
+        Size("lanes", "edge processors", 4, 1, _upto(NODE["mask"].width // 2), "P", column=True, brief=True),
+        Size("updates", "nodes updated per cycle", 1, 1, _upto(2), "M", column=True),
+        Size("nodes", "capacity: nodes", 512, 16, _upto(EDGE["i"].raw_max + 1, least=2), "N", column=True, brief=True),
         Size(
             "edges",
             "capacity: edges",
             4096,
+            16,
             _upto(1 << 16),  # index bits of a host address
             "E",
             held=Constant("ROWS", "capacity: edges of each lane", lambda p: p.rows),
             column=True,
+            brief=True,
         ),
-        Size("materials", "capacity: materials", 16, _upto(EDGE["material"].raw_max + 1), "M"),
-        Size("tables", "capacity: damper tables", 4, _upto(16), "T"),
-        Size("axes", "axes of a node that an updater takes per cycle", len(AXES), (1, len(AXES)), "A", optional=True),
+        Size("materials", "capacity: materials", 16, 2, _upto(EDGE["material"].raw_max + 1), "M"),
+        Size("tables", "capacity: damper tables", 4, 1, _upto(16), "T"),
+        Size(
+            "axes",
+            "axes of a node that an updater takes per cycle",
+            len(AXES),
+            len(AXES),
+            (1, len(AXES)),
+            "A",
+            optional=True,
+        ),
     )
 }
 

@@ -17,11 +17,11 @@ ROOT = Path(__file__).resolve().parents[1]
 ANOTHER = """
 from hw.sizes import SIZES, Size
 
-SIZES["pumps"] = Size("pumps", "pumps in the circuit", 3, range(1, 9), "X", optional=True, column=True)
+SIZES["pumps"] = Size("pumps", "pumps in the circuit", 3, 2, range(1, 9), "X", optional=True, column=True)
 
 from hw import options
 from hw.__main__ import parser
-from hw.boards import board
+from hw.boards import board, flow, tables
 from hw.emit import build, pages
 from hw.emit.manifest import parameters
 from hw.link.description import description, key
@@ -32,10 +32,10 @@ from hw.parameters import Parameters
 args = parser().parse_args(["verilog", "--pumps", "5"])
 p = options.parameters(args)
 assert p.pumps == 5 and Parameters().pumps == 3
-assert parser().parse_args(["timing", "--smallest", "--pumps", "2"]).pumps == 2
+assert parser().parse_args(["timing", "--board", "ulx3s-85f", "--pumps", "2"]).pumps == 2
 assert board.load("ulx3s-85f").parameters().pumps == 3
 assert board.load("ulx3s-85f").parameters(pumps=4).pumps == 4
-assert board.COLUMNS.split(" | ")[-1] == "pumps" and board.cells_of(p)[-1] == "5"
+assert list(tables.CIRCUIT)[-1] == "pumps" and flow.SMALLEST["pumps"] == 2
 assert parameters(p)["pumps"] == 5
 assert ", 5 pumps" in build.describe(p)
 assert "#define RHEOGATE_PUMPS 5" in pages.header(p, description(p))

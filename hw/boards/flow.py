@@ -19,9 +19,9 @@ from hw.families.flow import Flow
 from hw.families.registry import get_family
 from hw.families.resources import Resources
 from hw.parameters import Parameters
-from hw.sizes import sizes_of
+from hw.sizes import SIZES, sizes_of
 
-SMALLEST = {"lanes": 1, "updates": 1, "nodes": 16, "edges": 16, "materials": 2, "tables": 1, "axes": 3}
+SMALLEST = {size.name: size.small for size in SIZES.values()}
 """Sizes of a small circuit whose resources are published."""
 NAME = "rheogate"
 """Name of a bitstream's files, before their endings."""

@@ -105,9 +105,7 @@ BUILDS: Columns = {
 SUMMARY: Columns = {
     "board": lambda row: row.name,
     "device": lambda row: row.board.device,
-    "lanes": CIRCUIT["lanes"],
-    "nodes": CIRCUIT["nodes"],
-    "edges": CIRCUIT["edges"],
+    **{name: cell for name, cell in CIRCUIT.items() if SIZES[name].brief},
     **CLOCK,
     **STATE,
 }
