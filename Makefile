@@ -9,12 +9,12 @@ BOARD ?= ulx3s-85f
 run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
 lower = $(shell echo $(1) | tr A-Z a-z)
 option = --$(call lower,$(1)) $($(1))
-# The sizes of a circuit, hw/sizes.py; a board has its own, but for those that are given.
+# The sizes of a circuit (hw/sizes.py). A board has sizes of its own; those given on the command line replace them.
 SIZES := LANES UPDATES NODES EDGES MATERIALS TABLES AXES
 sizes := $(foreach size,$(SIZES),$(if $($(size)),$(call option,$(size))))
 given := $(foreach size,$(SIZES),$(if $(filter-out undefined file,$(origin $(size))),$(call option,$(size))))
 family := $(if $(FAMILY),--family $(FAMILY))
-# The tests of a file go to one worker: what they share is built once.
+# All tests of a file go to one worker, so that what they share is built once.
 pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
 
 .DEFAULT_GOAL := compare
@@ -31,18 +31,18 @@ figures: environment ## draw the paper's figures from runs of the circuit: PNG, 
 verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES=, AXES= choose its size, FAMILY= its hard blocks
 	@$(run) -m hw verilog $(sizes) $(family) --out build/verilog
 
-timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3", JOBS=
+timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3", JOBS=, KEEP=1 publishes
 	@$(run) -m hw timing --board $(BOARD) $(given) \
-	    $(if $(SEEDS),--seeds $(SEEDS)) --jobs $(JOBS)
+	    $(if $(SEEDS),--seeds $(SEEDS)) --jobs $(JOBS) $(if $(KEEP),--keep)
 
-bitstream: environment ## what is loaded into BOARD=, or a project for its vendor's tool; LANES= ... as above, KEEP=1 publishes
+bitstream: environment ## build what is loaded into BOARD=, or a project for its vendor's tool; LANES= ... as above, KEEP=1 publishes
 	@$(run) -m hw bitstream --board $(BOARD) $(given) \
 	    $(if $(KEEP),--keep)
 
 flash: environment ## load it into BOARD=; PERMANENT=1 to be there at power-on
 	@$(run) -m hw flash --board $(BOARD) $(if $(PERMANENT),--permanent)
 
-doctor: environment ## what is there, what is missing, what to do about it
+doctor: environment ## list what is installed, what is missing, what to do about it
 	@$(run) -m hw doctor
 
 bench: environment ## time the circuit's step and that of software on this machine: keep the machine idle meanwhile

@@ -11,21 +11,21 @@ from hw.sizes import SIZES, WORDS, sizes_of, words_of
 
 
 def whole(text: str) -> int:
-    """A whole number, as an argument's type."""
+    """Return the whole number that an option has; for argparse's ``type``."""
     if not re.fullmatch(r"-?[0-9]+", text):
         raise argparse.ArgumentTypeError(f"must be a whole number, not {text!r}")
     return int(text)
 
 
 def add_sizes(command) -> None:
-    """Options for sizes in place of the board's; None if not given."""
+    """Add the options for sizes that replace the board's; None if not given."""
     for size in SIZES.values():
         text = f"{size.meaning}, {size.choice} (the board's)"
         command.add_argument(f"--{size.name}", type=whole, metavar=size.letter, help=text)
 
 
 def add_circuit(command) -> None:
-    """Options for a circuit's sizes, word lengths and family."""
+    """Add the options for a circuit's sizes, word lengths and family."""
     for size in SIZES.values():
         text = f"{size.meaning}, {size.choice} ({size.default})"
         command.add_argument(f"--{size.name}", type=whole, default=size.default, metavar=size.letter, help=text)
@@ -38,7 +38,7 @@ def add_circuit(command) -> None:
 
 
 def parameters(args) -> Parameters:
-    """The circuit that the options choose. Raises `InputError` naming the option for one that can't be."""
+    """Return the parameters that the options choose. Raises `InputError` naming the option for one that can't be."""
     try:
         return Parameters(**sizes_of(args), formats=Formats(**words_of(args)), family=args.family)
     except ValueError as error:

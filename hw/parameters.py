@@ -55,7 +55,7 @@ class Parameters(Sizes):
 
     @property
     def rows(self) -> int:
-        """Edges a lane holds."""
+        """Edges that a lane holds."""
         return -(-self.edges // self.lanes)
 
     @property
@@ -68,15 +68,16 @@ class Parameters(Sizes):
 
     @property
     def node_rows(self) -> int:
-        """Nodes an updater holds."""
+        """Nodes that an updater holds."""
         return -(-self.nodes // self.updates)
 
     @property
     def node_row_bits(self) -> int:
         return max(1, (self.node_rows - 1).bit_length())
 
-    def node_place(self, node):
-        return node_place(node, self.updates)
+    def node_address(self, node: Value) -> tuple[Value, Value]:
+        """Return `node_address` of a node for this number of updaters."""
+        return node_address(node, self.updates)
 
     @property
     def material_bits(self) -> int:
@@ -89,7 +90,7 @@ class Parameters(Sizes):
         return (max(self.rows, self.nodes, self.materials, table) - 1).bit_length()
 
 
-def node_place(node: Value, updates: int) -> tuple[Value, Value]:
-    """(row, column) of a node's number: the updater ``column`` holds it as its ``row``."""
+def node_address(node: Value, updates: int) -> tuple[Value, Value]:
+    """Return (row, column) of a node, from its number: updater ``column`` holds it at address ``row``."""
     bits = updates.bit_length() - 1
     return (node[bits:], node[:bits]) if bits else (node, Const(0, 1))

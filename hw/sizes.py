@@ -19,7 +19,7 @@ EDGE, NODE = records.edge_entry(), records.node_entry()
 
 
 class Constant(NamedTuple):
-    """A control register that tells a host a number of the circuit."""
+    """A control register with a constant of the circuit, for the host."""
 
     name: str
     meaning: str
@@ -44,13 +44,13 @@ class Size:
     letter : str
         Stands for the value in the help text.
     held : Constant
-        What the control register holds if it is not the size itself.
+        The control register, if it holds something else than the size itself.
     optional : bool
-        A board's file may leave it out, and then has the default.
+        Whether a board's file may leave it out; it then has the default.
     column : bool
-        Shown in tables of boards.
+        Whether tables of boards show it.
     brief : bool
-        Shown in the README's short table too.
+        Whether the README's short table shows it too.
     """
 
     name: str
@@ -77,7 +77,7 @@ class Size:
         return self.held or Constant(self.name.upper(), self.meaning, lambda p: sizes_of(p)[self.name])
 
     def check(self, value) -> None:
-        """Raises ValueError unless the value is allowed."""
+        """Raise ValueError unless the value is allowed."""
         if not isinstance(value, int) or value not in self.allowed:
             kind = "a whole number from " if len(self.allowed) > 2 else ""
             raise ValueError(f"{self.name} must be {kind}{self.choice}, not {value!r}")
@@ -122,11 +122,11 @@ WORDS = {
     "operand": "bits of a multiplier's operand",
     "state": "bits of a stored state",
 }
-"""Word lengths, the parameters of `golden.datapath.formats.Formats`, which says what they may be."""
+"""Word lengths: the parameters of `golden.datapath.formats.Formats`, which checks them."""
 
 
 def sizes_of(holder) -> dict[str, int]:
-    """Return the sizes of `Parameters`, or of anything else with such attributes."""
+    """Return the sizes of `hw.parameters.Parameters`, or of anything else with such attributes."""
     return {name: getattr(holder, name) for name in SIZES}
 
 
@@ -136,12 +136,12 @@ def words_of(holder) -> dict[str, int]:
 
 
 def cycles_per_node(holder) -> int:
-    """Cycles that an updater takes for a node."""
+    """Return the cycles that an updater takes for a node."""
     return len(AXES) // holder.axes
 
 
 def shown(holder) -> dict[str, str]:
-    """The sizes as text. The axes show in the updates per cycle, as in 1/3."""
+    """Return the sizes as text. The axes show in the updates per cycle, as in 1/3."""
     texts = {name: str(size) for name, size in sizes_of(holder).items() if name != "axes"}
     if (cycles := cycles_per_node(holder)) > 1:
         texts["updates"] += f"/{cycles}"
@@ -149,5 +149,5 @@ def shown(holder) -> dict[str, str]:
 
 
 def summary(holder) -> str:
-    """All sizes, for a sentence."""
+    """Return all sizes as text for a sentence."""
     return ", ".join(f"{n} {name.removesuffix('s') if n == '1' else name}" for name, n in shown(holder).items())

@@ -34,7 +34,8 @@ LINK = pathlib.Path("build/link")
 
 @pytest.fixture
 def figure(request):
-    """Give a function (item, required, figure) that records a campaign's measurements of the link in `build/link.json`.
+    """Give a function (item, required, figure) that records a campaign's measurements of the link in
+    ``build/link.json``.
 
     The test's earlier measurements are removed first, even if it fails this time.
     """

@@ -173,7 +173,7 @@ def figures_of_the_circuit():
         f"another {len(node)} multipliers",
         f"copy {cycles[UPDATED]} cycles later",
         f"wide enough for {capacity.max_edges_at_node(FORMATS)}\nedges",
-        f"At least {cycles['an edge to the next edge of the same node, at least']} cycles lie",
+        f"At least {cycles['issue of an edge to its issue in the next stage, at least']} cycles lie",
         f"{busiest} cycles are {busiest / 100:.1f} microseconds",
         f"State words have {FORMATS.state} bits",
         f"factors have {FORMATS.operand} bits",

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+import warnings
 from importlib.metadata import distribution
 
 import pytest
@@ -170,3 +171,8 @@ def test_make_help_lists_every_target():
     )
     phony = re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.M)[1].split()
     assert {line.split()[1] for line in done.stdout.splitlines()} == set(phony) - {"environment"}
+
+
+def test_warnings_fail_the_tests():
+    with pytest.raises(UserWarning, match="as an error"):
+        warnings.warn("as an error", stacklevel=1)

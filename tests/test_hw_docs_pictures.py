@@ -14,7 +14,7 @@ from hw.machine.core import datapaths
 from hw.machine.issued import FETCHED
 from hw.parameters import Parameters
 
-STAGE = "stage", "an edge to the next edge of the same node, at least"
+STAGE = "stage", "issue of an edge to its issue in the next stage, at least"
 SUMS = "edge", "issue to the sums that contain its force"
 WRITTEN = "edge", "issue to its new ratio in the memory"
 CIRCUITS = [Parameters(), Parameters(lanes=1), Parameters(lanes=1, axes=1), Parameters(updates=2)]

@@ -1,4 +1,5 @@
-"""The frames of the shipped scenes keep their bits: whoever changes the arithmetic changes `frames.json` knowingly."""
+"""The frames of the shipped scenes keep their bits: whoever changes the arithmetic changes ``frames.json``
+knowingly."""
 
 import hashlib
 import json

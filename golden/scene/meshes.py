@@ -12,7 +12,8 @@ from golden.scene import schema
 
 
 def build_mesh(table: schema.Mesh, folder: Path) -> Mesh:
-    """Return the mesh of a table; file names are relative to the folder. Raises `InputError` naming the table's key."""
+    """Return the mesh of a table; file names are relative to the folder. Raises `golden.support.errors.InputError`
+    naming the table's key."""
     match table:
         case schema.Rectangle():
             return mesh.rectangle(table.nodes, table.size)

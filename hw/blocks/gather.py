@@ -11,7 +11,10 @@ GATHERED = len(AXES)
 
 
 class Gather(wiring.Component):
-    """The OR of `GATHERED` words that come in as many cycles. It is out for as many cycles, `GATHERED` after each word.
+    """The OR of `GATHERED` words that come in consecutive cycles.
+
+    Latency `GATHERED` cycles from each word; the result stays for as many cycles. Throughput one group in `GATHERED`
+    cycles.
 
     Parameters
     ----------
@@ -21,7 +24,7 @@ class Gather(wiring.Component):
     -------
     i : In(width)
     first : In(1)
-        It is the first word of a group.
+        ``i`` is the first word of a group.
     o : Out(width)
     """
 
@@ -33,8 +36,7 @@ class Gather(wiring.Component):
         m = Module()
         before = Signal.like(self.i, reset_less=True)
         held = Signal.like(self.i, reset_less=True)
-        # since the first word
-        whole = Signal.like(self.i)
+        whole = Signal.like(self.i)  # the OR since the first word
         ago = Signal(GATHERED - 1, reset_less=True)
         m.d.comb += [whole.eq(Mux(self.first, 0, before) | self.i), self.o.eq(held)]
         m.d.sync += [before.eq(whole), ago.eq(Cat(self.first, ago))]

@@ -6,14 +6,14 @@ from amaranth.lib.wiring import In, Out
 
 
 def latency(count: int) -> int:
-    """Return the cycles it takes: one to drop what is not valid, one for each level of comparisons."""
+    """Return the latency in cycles: one to replace invalid numbers by 0, one for each level of comparisons."""
     return 1 + (count - 1).bit_length()
 
 
 class Highest(wiring.Component):
     """The highest of the valid numbers, or 0.
 
-    Latency `latency`. Throughput one result a cycle.
+    Latency `latency` (count) cycles, throughput one result a cycle.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class BlockRam(_Ram):
     A word appears `READ_LATENCY` cycles after its address, one a cycle. A word that is read in the cycle in which it
     is written is undefined on real devices (here it is the old one); a later read finds it.
 
-    Its contents, ``init``, are words to start with, or 0. A family makes its own module of it, if it has block RAMs
+    ``init`` are its contents at power-on, 0 by default. A family makes its own module of it, if it has block RAMs
     (``get_block_ram`` of Amaranth's ``platform``).
 
     Members

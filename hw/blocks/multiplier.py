@@ -21,7 +21,7 @@ class Multiplier(wiring.Component):
     Parameters
     ----------
     a, b : Shape
-        Operands.
+        The operands' shapes.
     registers : int
         At least 2.
     apart : bool

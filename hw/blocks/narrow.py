@@ -1,4 +1,4 @@
-"""A product with a number of few bits: an adder tree, which needs no multiplier."""
+"""A multiplier for a narrow operand: an adder tree, which needs no DSP block."""
 
 from amaranth.hdl import Module, Mux, Shape, Signal
 from amaranth.lib import wiring
@@ -21,7 +21,7 @@ class NarrowMultiplier(wiring.Component):
     Parameters
     ----------
     a, b : Shape
-        Operands; ``b`` is the narrow one.
+        The operands' shapes; ``b`` is the narrow one.
     registers : int
         At least 1 and at least `levels` of ``b``'s bits.
 

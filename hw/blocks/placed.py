@@ -12,14 +12,14 @@ class Placed(wiring.Component):
     ----------
     module : str
     signature
-        Of a component, or its members.
+        A component's signature, or its members.
     reset : Value
-        The module's reset; that of the clock domain if not given.
+        The module's reset; by default the reset of the clock domain.
 
     Raises
     ------
     NotImplementedError
-        In Amaranth's simulator, which would leave the module out.
+        If Amaranth's simulator elaborates it: the simulator would leave the module out.
     """
 
     def __init__(self, module: str, signature, *, reset=None):

@@ -9,12 +9,13 @@ LATENCY = 1
 
 
 class Queue(wiring.Component):
-    """First in, first out. A word appears in the cycle after it was put in, once those before it have been taken.
+    """First in, first out. A word appears `LATENCY` cycles after it was put, once those before it have been taken. A
+    word can be put and one taken in every cycle.
 
     Parameters
     ----------
     width, depth : int
-        There must never be more words in it than ``depth``, a power of two.
+        It must never hold more words than ``depth``, a power of two.
 
     Members
     -------
@@ -22,7 +23,7 @@ class Queue(wiring.Component):
         Empty it.
     put : In(1), data_in : In
     valid : Out(1), take : In(1), data : Out
-        There is a word; it is taken. ``take`` only while ``valid``.
+        The next word; ``take`` removes it, only while ``valid``.
 
     Raises
     ------
@@ -52,9 +53,8 @@ class Queue(wiring.Component):
         write = words.write_port()
         read = words.read_port(domain="comb")
         addresses = [Signal(range(self.depth), name=name) for name in ("next_in", "next_out")]
-        # The next word is in a register, so the memory is never full, and in every cycle the put word is written to its
-        # free address: without a put it is written over later. That words wait in it is in a register too, because its
-        # fan-out is the whole next word
+        # The next word is in a register, so the memory is never full, and its write port is always enabled: a word that
+        # was not put is overwritten later. ``waiting`` is a register too, because its fan-out is the whole next word
         advances = Signal()
         waiting = Signal()
         passes = Signal()

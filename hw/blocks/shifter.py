@@ -6,18 +6,20 @@ from amaranth.lib.wiring import In, Out
 
 
 class ShiftStage(wiring.Component):
-    """A number shifted by 0 or 1, or by 0 to 3 times some places; combinational.
+    """A number shifted by ``times`` x ``places`` bits; combinational.
 
     Bits that are shifted out are lost. A shift to the left fills with zeros, one to the right with copies of the sign.
 
     Parameters
     ----------
     shape : Shape
-        Of the number.
+        The number's.
     bits : int
         Bits of ``times``, 1 or 2.
     places : int
+        Bits of the shift for each of ``times``.
     left : bool
+        The direction.
 
     Members
     -------

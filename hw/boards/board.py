@@ -48,13 +48,13 @@ class Board(Struct, forbid_unknown_fields=True):
     device: str
     package: str
     grade: Count
-    target_mhz: Positive  # constraint for place and route when the circuit alone is timed
+    target_mhz: Positive  # the clock asked of place and route when the circuit alone is timed
     oscillator_mhz: Positive
     clock_mhz: Positive  # the circuit's clock on this board, which the PLL makes
     baud: int  # of the serial line
     loader: str  # openFPGALoader's name of the board
     pins: Pins
-    circuit: Circuit  # built unless other sizes are asked for
+    circuit: Circuit  # the sizes unless others are given
     no_wide_luts: bool = False
 
     @property

@@ -1,5 +1,4 @@
-"""The flow from parameters to a result, with its two questions: how fast and how large is the circuit alone, and what
-is the bitstream of the board's top."""
+"""The flow from parameters to a result: clock and size of the circuit alone, or the bitstream of a board's top."""
 
 import hashlib
 from collections.abc import Callable

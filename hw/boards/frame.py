@@ -14,8 +14,8 @@ FRAME, CORE = "timing", "core"
 
 
 class Frame(wiring.Component):
-    """Every input of the circuit is a bit of one shift register, every output goes into a bit of another. So synthesis
-    removes nothing, and every path that is timed is the circuit's own, or as long as one to a host would be.
+    """The circuit between two shift registers: every input is a bit of one, every output goes into a bit of the other.
+    So synthesis removes nothing, and every timed path is the circuit's own or like one to a host on the same device.
 
     Members
     -------

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def progress(steps: int):
-    """Give a function that is called with the name of each step as it begins; it does nothing without a terminal."""
+    """Yield a function to call with the name of each step as it begins; it does nothing without a terminal."""
     if not sys.stderr.isatty():
         yield lambda step: None
         return

@@ -18,7 +18,7 @@ from hw.families.resources import Resources
 
 
 class Smallest(Struct, forbid_unknown_fields=True, kw_only=True):
-    """The resources of a circuit on a board's device after synthesis; of the smallest circuit they show a change of
+    """The resources of a circuit on a board's device after synthesis. Those of the smallest circuit show a change of
     size without place and route."""
 
     version: str  # of this project

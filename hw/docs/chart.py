@@ -1,4 +1,4 @@
-"""A chart of a pipeline in clock cycles: a row for each quantity, with the operations that make it."""
+"""A chart of a pipeline in clock cycles: a row for each quantity, with the operations that compute it."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ class Row:
     Attributes
     ----------
     name, words : str
-        Of the quantity, as the equations call it, and in words.
+        The quantity as the equations call it, and in words.
     spans : list of (str, int, int)
         Group, first cycle and end of each operation.
     """
@@ -44,8 +44,8 @@ class Row:
 def rows_of(schedule, quantities: list[tuple[str, str, tuple[str, ...]]], offset: int) -> list[Row]:
     """Return a row for each quantity of a pipeline, its cycles counted from ``offset`` cycles before the pipeline's.
 
-    ``quantities`` are (name, words, what their operations are called). An operation belongs to the quantity with the
-    longest of these names that its own begins with.
+    ``quantities`` are (name, words, stems). An operation belongs to the quantity with the longest stem that its name
+    begins with.
 
     Raises
     ------

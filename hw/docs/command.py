@@ -1,4 +1,4 @@
-"""`python -m hw docs`: bring the generated tables and pictures up to date."""
+"""``python -m hw docs``: bring the generated tables and pictures up to date."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The picture of the core: the loop from an edge's issue to the next edge of the same node, with its cycles."""
+"""The picture of the core: the loop from an edge's issue to its issue in the next stage, with its cycles."""
 
 from hw.docs import svg
 from hw.emit.latencies import latencies
@@ -14,7 +14,7 @@ LANE, NODE, HOST = ("#eaf2fb", "#0969da"), ("#fff6dd", "#bf8700"), ("#f6f8fa", "
 
 
 def loop(parameters: Parameters) -> dict[str, int]:
-    """Return the cycles of each part of the loop from an edge's issue to that of the next edge of the same node."""
+    """Return the cycles of each part of the loop from an edge's issue to its issue in the next stage."""
     edge, node = datapaths(parameters)
     whole = Latencies.of(parameters)
     summed = FETCHED + edge.ready("pull_x") + WRITTEN
@@ -31,11 +31,12 @@ def loop(parameters: Parameters) -> dict[str, int]:
 
 
 def core(parameters: Parameters) -> str:
+    """Return the picture of a circuit with these parameters, an SVG document."""
     p, cycles = parameters, loop(parameters)
     words = {(part, path): number for part, path, number in latencies(p)}
     lanes, updaters = (f"{n} {name}{'s' * (n > 1)}" for n, name in ((p.lanes, "lane"), (p.updates, "updater")))
     way = " + ".join(map(str, cycles.values()))
-    caption = f"{way} = {sum(cycles.values())} cycles from an edge to the next edge of the same node, at least"
+    caption = f"{way} = {sum(cycles.values())} cycles at least from the issue of an edge to its issue in the next stage"
     elements = [
         svg.text(16, 28, "The core in clock cycles", size=16, bold=True),
         svg.text(16, 46, caption, size=12, fill=svg.FAINT),

@@ -1,4 +1,4 @@
-"""The picture of a lane: in which cycle after its issue each quantity of an edge is made."""
+"""The picture of a lane: the cycles after an edge's issue in which each of its quantities is computed."""
 
 from hw.blocks.memory import READ_LATENCY
 from hw.docs.chart import Row, chart, rows_of
@@ -33,10 +33,11 @@ QUANTITIES = [
     ("slope", "da/dt", ("slope",)),
     ("ratio", "the stage's and the next step's a", ("value", "total", "ratio_next", "base_next")),
 ]
-"""Name, words, and what the operations of each are called (`golden.datapath.edge`)."""
+"""Name, words, and the stems of the names of its operations (`golden.datapath.edge`), for each row."""
 
 
 def lane(parameters: Parameters) -> str:
+    """Return the picture for a circuit with these parameters, an SVG document."""
     datapath, _ = datapaths(parameters)
     arrival = datapath.schedule.arrival
     last = max(written(datapath, output) for output in NEXT.values())

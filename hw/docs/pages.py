@@ -1,4 +1,4 @@
-"""Which page has which generated tables, and how a page is brought up to date."""
+"""The generated tables of each page, and a page with its tables brought up to date."""
 
 from hw.docs.tables import TABLES
 from hw.parameters import Parameters

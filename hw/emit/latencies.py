@@ -25,7 +25,7 @@ def latencies(p: Parameters) -> list[tuple[str, str, int]]:
         ("edge", "issue to the sums that contain its force", sums_latency(edge)),
         ("edge", "issue to its new ratio in the memory", last),
         ("node", "issue to its new state in the lanes' memories", node.latency + COPIED),
-        ("stage", "an edge to the next edge of the same node, at least", loop.edge + loop.node),
+        ("stage", "issue of an edge to its issue in the next stage, at least", loop.edge + loop.node),
         ("host port", "request to answer", HOST_LATENCY),
         ("link", "end of a command that reads a word to its answer, at most", one_word(items)),
         ("link", f"end of any command to its answer, at most; {exchange}", longest(items)),

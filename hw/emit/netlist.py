@@ -9,7 +9,7 @@ from amaranth.lib.wiring import In
 
 PLACEHOLDER = "name_of_the_module"
 NAMELESS = re.compile(r"^  wire .*\\(\$[a-z]\S*)$", re.MULTILINE)
-"""Amaranth's names for signals for which it finds none begin so."""
+"""Names that Amaranth makes up for signals without one: they begin with a $ and a letter."""
 
 
 class NoBlocks:
@@ -19,7 +19,7 @@ class NoBlocks:
 def netlist(component: wiring.Component, name: str, platform=None) -> str:
     """Return RTLIL of ``component`` as the module ``name``, and of its parts as modules ``<name>_<kind>``.
 
-    A component with an attribute ``kind`` is called so, any other after its class; one that elaborates to an instance
+    The kind is the component's attribute ``kind``, or else its class; a component that elaborates to an instance
     (`hw.blocks.placed.Placed`) stays one. Elaborates the component; the wires of its submodules' ports are renamed
     after submodule and port. The components may ask ``platform`` for modules of its own (`hw.families.family.Blocks`).
 

@@ -13,6 +13,8 @@ CLOSE = 1e-6
 
 
 class ClockSource(Protocol):
+    """The source of a circuit's clock on a board."""
+
     def verilog(self, name: str, oscillator_mhz: float, clock_mhz: float) -> tuple[str, float]:
         """Return the Verilog of a module ``name`` with the ports oscillator, clock and locked, and its clock in MHz.
 

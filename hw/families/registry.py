@@ -1,4 +1,4 @@
-"""The families there are: every folder beside this file that has a ``family.py``."""
+"""All families: every folder beside this file that has a ``family.py``."""
 
 import pkgutil
 from importlib import import_module

@@ -22,7 +22,7 @@ class Access:
     memories : MemoryAccess
         The host port's.
     idle, loading : Value
-        The host has the memories of lanes and updaters; it has those of lists.
+        1 while the host has the memories of lanes and updaters; 1 while it has those of the lists.
     """
 
     def __init__(self, m: Module, lines: DelayLines, parameters: Parameters, memories: MemoryAccess, idle, loading):
@@ -37,7 +37,7 @@ class Access:
         """Connect updaters (`hw.machine.interfaces.UpdaterAccess`) and their lists
         (`hw.machine.interfaces.EntryAccess`)."""
         m, p = self._m, self._parameters
-        row, column = p.node_place(self._index)
+        row, column = p.node_address(self._index)
         if p.cycles_per_node > 1:
             axis = self._axis()
             m.d.comb += [host.axis.eq(axis) for host in updaters]
@@ -57,7 +57,7 @@ class Access:
             reads = [words[f"state_{name}"] for name in NODE_STATE] + [words[name] for name in NODE_LOAD]
             reads += [host.words.mass, entries.word, *(words[name] for name in NODE_FORCE)]
             nodes.append(self._chosen(reads, f"node{number}"))
-        _, column = p.node_place(self._memories.index)
+        _, column = p.node_address(self._memories.index)
         m.d.comb += self._words["node"].eq(self._then_chosen(nodes, column, "node"))
 
     def to_lanes(self, lanes, lists):
@@ -86,7 +86,8 @@ class Access:
             self._m.d.comb += self._words[name].eq(word)
 
     def _to_list(self, entries, name, index, strobe):
-        """A list's memory is as far away as the others, and has its registers at its ports."""
+        """Connect a list's memory, with as many registers on the route as to the others, those at its ports
+        included."""
 
         def later(value, label):
             return self._lines.later(value, HANDOVER - PORT, name=f"{name}_{label}", reset=label == "write")
@@ -99,7 +100,7 @@ class Access:
         ]
 
     def _strobe(self, region: Region, word: int, lane: int | None = None) -> Signal:
-        """Return the strobe of the host's writes to such a word, of such a lane, from a register."""
+        """Return the strobe of the host's writes to a word, of one lane if given, from a register."""
         if (region, word, lane) not in self._strobes:
             here = self._memories.strobe[region] & (self._memories.word == word)
             strobe = Signal(name=f"write_{region.name.lower()}_{word}" + ("" if lane is None else f"_{lane}"))
@@ -109,7 +110,7 @@ class Access:
 
     def _node_strobes(self, names, number):
         words = Map(self._parameters).words(Region.NODE)
-        _, column = self._parameters.node_place(self._index)
+        _, column = self._parameters.node_address(self._index)
         return Cat(self._strobe(Region.NODE, words.index(name)) & (column == number) for name in names)
 
     def _axis(self) -> Signal:
@@ -121,9 +122,9 @@ class Access:
         return axis
 
     def _chosen(self, words, name):
-        """Return the word that is read, of one lane or updater."""
+        """Return the addressed word of one lane or updater, `CHOICE` cycles after the words."""
         return choose(self._m, self._lines, words, self._memories.word, cycles=CHOICE, name=name, ahead=MEMORY)
 
     def _then_chosen(self, words, index, name):
-        """Return that of the lane or updater that is read, `CHOICE` cycles later."""
+        """Return the word of the addressed lane or updater, `CHOICE` cycles later still."""
         return choose(self._m, self._lines, words, index, cycles=CHOICE, name=name, ahead=MEMORY + CHOICE)

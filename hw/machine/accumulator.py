@@ -11,7 +11,7 @@ from golden.datapath.formats import Formats
 from golden.numbers.graph import AXES
 from hw.blocks.memory import READ_LATENCY, BlockRam
 from hw.machine.interfaces import Vector, named
-from hw.parameters import node_place
+from hw.parameters import node_address
 from hw.pipeline.delay import DelayLines
 
 ANNOUNCED = READ_LATENCY + 1
@@ -96,7 +96,7 @@ class Accumulator(wiring.Component):
         for age, bit in zip(recent, same, strict=True):
             m.d.sync += bit.eq(valid[now - 3 + age] & (node[now - 3 + age] == node[now - 3]))
         hits = [Signal(name=f"hit_{age}", reset_less=True) for age in recent]
-        stored, latest = (Signal(name=name, reset_less=True) for name in ("stored", "latest"))
+        stored, latest = (Signal(name=f"use_{name}", reset_less=True) for name in ("stored", "latest"))
         for number, hit in enumerate(hits):
             m.d.sync += hit.eq(~first[now - 2] & same[number] & ~Cat(same[:number]).any())
         m.d.sync += [stored.eq(~first[now - 2] & ~Cat(same).any()), latest.eq(hits[0])]
@@ -112,7 +112,7 @@ class Accumulator(wiring.Component):
             m.d.comb += before.eq(_chosen([(latest, past[0])]) | earlier)
             m.d.sync += past[0].eq(before - pulls[axis] if self._subtract else before + pulls[axis])
             m.d.sync += Cat(*past[1:]).eq(Cat(*past[:-1]))
-            row, column = node_place(node[written], self._updates)
+            row, column = node_address(node[written], self._updates)
             _write(m, own, valid[written], node[written], past[WRITTEN - 2])
             for n in range(self._updates):
                 copy = self._memory(m, f"sum_{axis}_nodes{n}", self._rows, self.sum_row)

@@ -1,4 +1,4 @@
-"""Counts the entries of one list that are done, for the entries of the other list that wait for them."""
+"""A count of the entries of one list that are done, for the entries of the other list that wait for them."""
 
 from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
@@ -13,16 +13,15 @@ LATENCY = 1
 class CompletionCounter(wiring.Component):
     """Counts a list's entries as they are done, and compares the count with what the other list's entries need.
 
-    All comparisons are made a cycle ahead, because the comparator is slow: of the other list's entry in its issue
-    register, of the one after it, and of the one after that. Where each of them stands in the next cycle is known
-    before the count is.
+    Three entries of the other list are compared, the one in its issue register and the two after it, all a cycle
+    ahead, because the comparator is slow. Latency `LATENCY`.
 
     Parameters
     ----------
     width : int
         Bits of a need, and of the count.
     first : int
-        0 or 1: the count of a list of which nothing is done.
+        0 or 1: the count while nothing of the list is done.
 
     Members
     -------
@@ -31,7 +30,7 @@ class CompletionCounter(wiring.Component):
     completion : In(Completion)
         With a list's last entry the count begins again.
     need, next_need, second_need : In
-        What the entry in the issue register needs, the one after it, and the second after it: less than the count.
+        The needs of the entry in the issue register and of the two after it. A need is met if it is below the count.
     advances : In(1)
         In the next cycle the next entry is in the issue register.
     reached, next_reached : Out(1)
@@ -63,7 +62,7 @@ class CompletionCounter(wiring.Component):
 
     def elaborate(self, platform):
         m, done, last = Module(), self.completion.done, self.completion.last
-        count = Signal.like(self.need, name="count", reset_less=True)  # of less than the list's last
+        count = Signal.like(self.need, name="count", reset_less=True)  # the list's last entry sets it back
         with m.If(done):
             m.d.sync += count.eq(Mux(last, self._first, count + 1))
         with m.If(self.clear):

@@ -1,4 +1,4 @@
-"""The control registers: what can be written into them, what writing does, and what reading gives."""
+"""The control registers: what may be written to them, what a write does, and what a read returns."""
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
@@ -12,25 +12,26 @@ ANYTIME = [register for register, row in REGISTERS.items() if row.while_busy]
 """Control registers that may be written while the machine is busy."""
 
 COUNTS = [register for register, row in REGISTERS.items() if row.least == 1]
-"""Control registers into which 0 may not be written."""
+"""Control registers to which 0 may not be written."""
 
 
 def in_range(p: Parameters, data: Value) -> Value:
-    """Return a bit for each control register: the data are not too large to be written into it."""
+    """Return a bit for each control register: 1 if the data are small enough to be written to it."""
     return Cat(data <= row.most(p) if row.most else Const(row.writable) for row in REGISTERS.values())
 
 
 def reads(m: Module, port, p: Parameters, written: dict[Control, Value], refuse: Value) -> list[Value]:
-    """Write the registers of a host port into its module. Return what a read of each gives, in the order of `Control`.
+    """Add the registers of a host port to its module. Return the value that a read of each returns, in the order of
+    `Control`.
 
     Parameters
     ----------
     port : hw.machine.host_port.HostPort
         Its ports ``rows``, ``nodes``, ``velocity_shift`` and ``steps`` are registers.
     written : dict of Control to Value
-        ``port.memories.data`` is written into the register in this cycle.
+        1 if ``port.memories.data`` is written to the register in this cycle.
     refuse : Value
-        A request was refused.
+        1 if a request was refused.
     """
     data, state = port.memories.data, p.formats.state
     refused = Signal(32)

@@ -40,8 +40,8 @@ def faults(edge: EdgeDatapath, node: NodeDatapath) -> list[str]:
 
 
 def completions(edge: EdgeDatapath, node: NodeDatapath) -> tuple[int, int]:
-    """Return the cycles from the issue of a row until its sums can be read in the next cycle, and from that of a row of
-    nodes until the lanes have its new states."""
+    """Return two counts of cycles: from the issue of a row of edges to the cycle before its sums can be read, and from
+    the issue of a row of nodes to its new states in the lanes."""
     return latency(edge) - 1, node.latency + COPIED
 
 
@@ -96,7 +96,7 @@ class Core(wiring.Component):
         access.to_nodes([updater.host for updater in updaters], nodes.host)
         access.to_lanes([lane.host for lane in lanes], rows.host)
         self._lists(m, host, sequencer, rows, nodes, loading)
-        # The updaters and lanes are far from the host port, and there is time
+        # A register on the route to updaters and lanes, which are far from the host port
         velocity_shift = lines.later(host.velocity_shift, 1, name="velocity_shift")
         self._lanes(m, lines, lanes, updaters, rows, nodes, sequencer.row_stage, loading, velocity_shift)
         self._updaters(m, updaters, lanes, nodes, sequencer.node_stage, velocity_shift)
@@ -106,8 +106,8 @@ class Core(wiring.Component):
         return m
 
     def _idle(self, m, lines, busy) -> tuple[Value, Value]:
-        """Return ``idle``, the host has the memories; and ``loading``, a run has not begun long enough ago for what the
-        host has written to have arrived."""
+        """Return two bits: ``idle``, the host has the memories of lanes and updaters; ``loading``, it has those of the
+        lists, until its last writes before a run have arrived."""
         idle = Signal(init=1)
         loading = Signal(init=1)
         m.d.sync += idle.eq(~busy)

@@ -23,8 +23,8 @@ STATE_SLACK = 16
 class EdgeDatapath:
     """`golden.datapath.graphs.edge_graph` with its schedule.
 
-    Only the two nodes' positions come with the edge: velocities, materials and the edge's state are read when they are
-    needed.
+    Only the positions of the two nodes come with the edge; velocities, materials and the edge's state are read when
+    they are needed.
     """
 
     def __init__(self, formats: Formats, tables: int, cost: Cost):
@@ -72,8 +72,8 @@ class EdgeProcessor(wiring.Component):
     inputs : In(Named), outputs : Out(Named)
         Of the graph.
     fault : Out
-        One bit for each name in ``datapath.faults``: 1 when it has happened to a valid edge, `FAULT_LATENCY` cycles
-        before.
+        One bit for each name in ``datapath.faults``: 1 when it has happened to a valid edge,
+        `hw.pipeline.pipe.FAULT_LATENCY` cycles before.
     table_write, table_address, table_data : In
         Writes a word of the damper tables; only while no edge is under way.
     table_read : In(1), table_word : Out

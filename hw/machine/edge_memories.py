@@ -6,7 +6,7 @@ from hw.machine.memory_ports import Use, registered_ports
 from hw.machine.routes import HANDOVER, PORT
 
 NEXT = {"base": "base_next", "ratio": "ratio_next", "total": "total_next"}
-"""The words that the edge processor writes, and its outputs for them."""
+"""The edge processor's outputs, by the word of an edge that each is written to."""
 
 REGISTERS = 1
 """Registers from a memory to the edge processor: block RAMs sit at fixed sites."""

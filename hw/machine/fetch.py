@@ -48,7 +48,7 @@ class Fetch(wiring.Component):
     address : Out, data : In
         To the memory.
     entry : Out(ListEntry), advances : In(1)
-        There is an entry; with ``advances`` it is taken, if there is one, and the next one comes.
+        The next entry. With ``advances`` it is taken, if there is one, and the one after it follows.
     second_word : Out
         ``entry.word`` in the next cycle, if it ``advances`` and there is an entry then.
     """
@@ -101,8 +101,8 @@ class Fetch(wiring.Component):
 
 
 class PacedFetch(wiring.Component):
-    """A `Fetch` that knows by itself when its entry moves into the list's issue registers: it has a register of its own
-    for that, because the queue hangs on it and may be routed far from them.
+    """A `Fetch` with an issue register of its own, which tells it when its entry moves into the list's issue registers:
+    the register drives the whole queue, so it should be placed near it.
 
     Members
     -------
@@ -111,7 +111,7 @@ class PacedFetch(wiring.Component):
     advance : Out(Advance)
         For the list's issue registers.
     flush, count, address, data, entry, second_word
-        As of `Fetch`.
+        As in `Fetch`.
     """
 
     def __init__(self, *, index_bits: int, width: int, data_latency: int = READ_LATENCY):

@@ -15,7 +15,7 @@ from hw.pipeline.choice import choose
 from hw.pipeline.delay import DelayLines
 
 STAGES = "receive", "range", "check", "decode", "access"
-"""The registers from a request to its access, by what they end."""
+"""The registers from a request to its access, named after the work that ends in them."""
 
 LATENCY = len(STAGES) + MEMORY + 3 * CHOICE
 """Cycles from a request to its answer."""
@@ -70,13 +70,13 @@ class HostPort(wiring.Component):
         decoded = self._decoded(m)
         written = Signal(len(decoded.writes), name="written")  # a control register, a cycle later
         run = WRITABLE.index(Control.RUN)
-        # A count that is written is not 0
+        # A count that was accepted is not 0
         accepted = Signal()
-        loaded = Signal(2)
+        counts_written = Signal(2)
         free = ~self.busy & ~self.start & ~written[run]
-        may_run = ~decoded.writes[run] | loaded.all()
+        may_run = ~decoded.writes[run] | counts_written.all()
         m.d.comb += accepted.eq(decoded.accepted & (decoded.anytime | free) & may_run)
-        for bit, register in zip(loaded, (Control.ROW_COUNT, Control.NODE_COUNT), strict=True):
+        for bit, register in zip(counts_written, (Control.ROW_COUNT, Control.NODE_COUNT), strict=True):
             with m.If(accepted & decoded.writes[WRITABLE.index(register)]):
                 m.d.sync += bit.eq(1)
 
@@ -97,14 +97,14 @@ class HostPort(wiring.Component):
         return m
 
     def _decoded(self, m) -> SimpleNamespace:
-        """Return a request with all that can be told of it before its cycle of access."""
+        """Return a request with everything that is decoded before its access."""
         stages, map_ = iter(STAGES), self._map
         bus = self.bus
         received = _registered(
             m, next(stages), request=bus.request, write=bus.write, address=bus.address, data=bus.write_data
         )
         parts = ADDRESS.unpack(received.address)
-        inside = Signal(len(Region), name="inside")
+        inside = Signal(len(Region), name="inside_region")
         for r in Region:
             limits = {"index": map_.depth(r), "word": len(map_.words(r)), "lane": map_.lanes(r)}
             m.d.comb += inside[r].eq(Cat(parts[part] < limit for part, limit in limits.items()).all())
@@ -123,7 +123,7 @@ class HostPort(wiring.Component):
             bit & (ranged.not_zero | (register not in COUNTS))
             for bit, register in zip(ranged.in_range, Control, strict=True)
         ]
-        accepted = Signal(len(Region), name="accepted_in_region")  # unless the machine is busy: that is seen later
+        accepted = Signal(len(Region), name="accepted_in_region")  # busy is checked later
         for r in Region:
             writable = self._writable(r, ranged.index, ranged.word, value_ok)
             m.d.comb += accepted[r].eq(ranged.inside[r] & (~ranged.write | writable))
@@ -185,7 +185,7 @@ class HostPort(wiring.Component):
 
 
 def _registered(m: Module, stage: str, **values: Value) -> SimpleNamespace:
-    """Return registers of these values, called after the stage and what they hold."""
+    """Return registers for these values, named after the stage and the value."""
     registers = {name: Signal.like(value, name=f"{stage}_{name}") for name, value in values.items()}
     m.d.sync += [registers[name].eq(value) for name, value in values.items()]
     return SimpleNamespace(**registers)

@@ -1,5 +1,6 @@
-"""The interfaces between the machine's components. Each is seen from the side that gives most of it: a component that
-takes it has it as ``In``. Times are in cycles of the one clock; strobes are high for one cycle each."""
+"""The interfaces between the machine's components. Directions are those of the side that drives most of an interface;
+a component on the other side has it as ``In``. Times are in cycles of the one clock; strobes are high for one cycle
+each."""
 
 from amaranth.hdl import Value
 from amaranth.lib.wiring import In, Out, Signature
@@ -15,7 +16,7 @@ from hw.pipeline.operations import shape
 
 
 def named(interface) -> dict[str, Value]:
-    """Return an interface's ports by name, names of nested interfaces in front."""
+    """Return an interface's ports by name, with the names of nested interfaces as prefix."""
     return {"_".join(map(str, path)): port for path, _, port in interface.signature.flatten(interface)}
 
 
@@ -91,7 +92,7 @@ class Completion(Signature):
 
 
 class ListControl(Signature):
-    """The state of a list, for the sequencer, and its answers.
+    """The state of a list, for the sequencer, and the sequencer's answers.
 
     ``valid``: an entry is in the issue register, ``last``: it is the list's last one, ``issue``: it is issued in this
     cycle. ``reached``: all that it waits for has been done, in the stage in which entries of the other list are done;
@@ -178,8 +179,8 @@ class LaneAccess(Signature):
 
     A strobe in ``write`` writes ``data`` at ``index``: ``node`` has a bit for each word of a node's state, in one array
     element for each updater; ``material`` has one for each of its words, ``table`` for rho and sigma. What the memories
-    hold at ``index`` comes in ``words`` `hw.machine.routes.FOUND` cycles later; of a material it is the word ``field``,
-    `hw.machine.routes.CHOICE` cycles later still.
+    hold at ``index`` comes in ``words`` `hw.machine.routes.FOUND` cycles later; a material's word number ``field``
+    comes `hw.machine.routes.CHOICE` cycles later still.
     """
 
     def __init__(self, p: Parameters, *, materials: int, table: int):

@@ -14,7 +14,7 @@ class IssueRegister(wiring.Component):
     """A register between a list's `hw.machine.fetch` and what its entries start.
 
     Whether an entry is ready is known one cycle ahead, so that ``issue`` and ``advances`` come from registers: the
-    comparisons are slow, and every bit of the entry hangs on ``advances``. An entry can be issued in every cycle.
+    comparisons are slow, and ``advances`` drives every bit of the entry. An entry can be issued in every cycle.
 
     Members
     -------
@@ -23,7 +23,7 @@ class IssueRegister(wiring.Component):
     advance : In(Advance), next : In
         The fetched entry.
     entry, valid, issue : Out
-        The entry in the register, if there is one; it is issued in this cycle.
+        The entry in the register; whether there is one; whether it is issued in this cycle.
     advances : Out(1)
         In the next cycle the register holds the entry that is now fetched, or none.
 

@@ -15,7 +15,7 @@ FETCHED = READ_LATENCY + NEAR
 
 class IssuedEdge:
     """The fields of the edge that is issued (`golden.datapath.records.edge_entry`), its ``row``, and whether it is
-    ``valid``, each when it is asked for."""
+    ``valid``, each delayed to the cycle in which it is used."""
 
     def __init__(self, lines: DelayLines, p: Parameters, register: IssueRegister):
         entry = records.edge_entry()

@@ -54,7 +54,8 @@ def members(parameters: Parameters, datapath: EdgeDatapath) -> dict:
 
 
 class Lane(wiring.Component):
-    """Takes an edge per cycle: reads its nodes and its own state, processes it, adds its force to both nodes.
+    """Takes an edge per cycle: reads its nodes and its own state, processes it, adds its force to the sums of both
+    nodes.
 
     Latency: the sums of an edge can be read `latency` cycles after it was issued. Throughput one edge per cycle.
 
@@ -68,9 +69,9 @@ class Lane(wiring.Component):
     row : In(Advance), next_row, next_edge : In
         The edge that is fetched: its index in the lane's memories, its list's entry.
     node : In(Advance), next_node_row : In
-        The row of nodes that is fetched: the sums on that in the issue register are read.
+        The row of nodes that is fetched. The sums that are read are those of the row in the issue register.
     stage : In(StageBits)
-        Of the edge that was in the issue register `hw.machine.routes.STAGED` cycles before.
+        The stage of the edge that was in the issue register `hw.machine.routes.STAGED` cycles before.
     velocity_shift : In
         Constant while steps are run.
     update_row : In, update : In(NodeUpdate) for each updater
@@ -88,8 +89,8 @@ class Lane(wiring.Component):
     def elaborate(self, platform):
         m, p, datapath = Module(), self.parameters, self.datapath
         lines, host = DelayLines(m), self.host
-        # A reset near the logic: from the circuit's reset the routes are long
-        reset = Signal(name="reset_near", reset_less=True)
+        # A register for the lane's own reset, because the routes from the circuit's reset are long
+        reset = Signal(name="local_reset", reset_less=True)
         m.d.sync += reset.eq(ResetSignal())
         m.submodules.edge_processor = edge = EdgeProcessor(datapath)
         inputs, outputs = named(edge.inputs), named(edge.outputs)

@@ -11,8 +11,16 @@ from hw.parameters import Parameters
 
 @dataclass(frozen=True)
 class Latencies:
-    """Cycles from the issue of an edge to that of nodes that waited for it, and from that of a node to the edges; from
-    the start of a run to the issue of the first row of edges and the first of nodes, if they wait for nothing."""
+    """Latencies in cycles.
+
+    Attributes
+    ----------
+    edge, node : int
+        From the issue of an edge to that of a node that waited for it; from the issue of a node to that of an edge.
+    rows, nodes : int
+        From the start of a run to the issue of its first row of edges, and of its first row of nodes, if they wait for
+        nothing.
+    """
 
     edge: int
     node: int
@@ -25,5 +33,5 @@ class Latencies:
         edge, node = (cycles + COUNTER_LATENCY + ISSUE_LATENCY for cycles in done)
         memories = row_issue.data_latency(p), entry_memory.LATENCY
         rows, nodes = (LOADING + fetch.latency(data) + ISSUE_LATENCY for data in memories)
-        nodes += p.cycles_per_node > 1  # it is not found ready before it is in the issue register
+        nodes += p.cycles_per_node > 1  # found ready only once it is in the issue register
         return cls(edge, node, rows, nodes)

@@ -17,29 +17,29 @@ class ListIssue(wiring.Component):
     Parameters
     ----------
     index_bits, width, data_latency : int
-        As of `hw.machine.fetch.PacedFetch`.
+        As in `hw.machine.fetch.PacedFetch`.
     need : slice
         The bits of a word that say how many entries of the other list must be done.
     first : int
-        As of `hw.machine.completion_counter.CompletionCounter`.
+        As in `hw.machine.completion_counter.CompletionCounter`.
     latency : int
         Cycles from the issue of an entry to its completion.
     next_last : bool
-        As of `hw.machine.interfaces.ListControl`.
+        As in `hw.machine.interfaces.ListControl`.
 
     Members
     -------
     flush, clear : In(1)
         Empty the list's registers, before a run; begin to count, with a run.
     count, address, data
-        As of `hw.machine.fetch.Fetch`.
+        As in `hw.machine.fetch.Fetch`.
     control : Out(ListControl)
     advance : Out(Advance)
         For further issue registers, which hold ``next_word`` and ``next_index`` in part.
     word, index, next_word, next_index : Out
         The entry in the issue register, and the one that is fetched for it.
     others : In(Completion), completion : Out(Completion)
-        Of the other list's entries; of this list's.
+        Entries of the other list as they are done, and those of this list.
     """
 
     def __init__(self, *, index_bits, width, data_latency, need, first, latency, next_last=False):

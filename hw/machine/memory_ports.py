@@ -41,7 +41,7 @@ def registered_ports(m: Module, ram, name: str, host: Value, by_host: Use, own: 
         value = ours if theirs is None else theirs if ours is None else Mux(host, theirs, ours)
         for number in reversed(range(PORT)):
             suffix = f"_{number}" if number else ""
-            register = Signal.like(port, name=f"{name}_{label}_next{suffix}", reset_less=label != "write")
+            register = Signal.like(port, name=f"{name}_{label}_register{suffix}", reset_less=label != "write")
             m.d.sync += register.eq(value)
             value = register
         m.d.comb += port.eq(value)

@@ -13,7 +13,7 @@ NODE_WORDS = tuple(f"{quantity}_{axis}" for quantity in "xv" for axis in AXES)
 
 def node_copies(m, lines, p, datapath, issued, update_row, updates, host) -> dict:
     """Write the memories into a lane's module: two copies, one for each end of an edge, in a share for each updater.
-    Return the edge processor's inputs that are nodes' states.
+    Return the edge processor's inputs that are words of nodes.
 
     A word is read when the edge processor needs it: a node's state stays until all its edges' forces are summed. It is
     in the copies `hw.machine.routes.COPIED` cycles after the update; the last of these registers is shared with the
@@ -26,7 +26,7 @@ def node_copies(m, lines, p, datapath, issued, update_row, updates, host) -> dic
         return lines.later(value, HANDOVER - 1, name=name, reset=True)
 
     active, data = by_host(host.active, "host_active"), by_host(host.data, "host_data")
-    host_row, _ = p.node_place(by_host(host.index, "host_index"))
+    host_row, _ = p.node_address(by_host(host.index, "host_index"))
     row = Signal(p.node_row_bits, name="copied_row", reset_less=True)
     m.d.sync += row.eq(Mux(active, host_row, lines.later(update_row, COPIED - 1)))
     strobes, words = [], []
@@ -45,7 +45,7 @@ def node_copies(m, lines, p, datapath, issued, update_row, updates, host) -> dic
     for end in "ij":
         for number, word in enumerate(NODE_WORDS):
             name, found = f"{end}_{word}", []
-            read_row, column = p.node_place(issued.at(end, datapath.schedule.arrival.get(name, 0) - FETCHED))
+            read_row, column = p.node_address(issued.at(end, datapath.schedule.arrival.get(name, 0) - FETCHED))
             column = lines.later(column, READ_LATENCY, name=f"{name}_column")
             for n in range(p.updates):
                 m.submodules[f"node_{name}_{n}"] = ram = BlockRam(width=len(words[n][word]), depth=p.node_rows)

@@ -16,7 +16,7 @@ ENTRY = records.node_entry()
 
 class NodeIssue(wiring.Component):
     """Reads a row of nodes, one for each updater, from the updaters' lists and issues it as soon as the forces of all
-    its edges are summed: its nodes need the same number of rows.
+    its edges are summed. All nodes of a row wait for the same number of rows of edges.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class NodeIssue(wiring.Component):
     Members
     -------
     flush, clear, count, control, advance, others, completion
-        As of `hw.machine.list_issue.ListIssue`; ``count`` is of nodes.
+        As in `hw.machine.list_issue.ListIssue`; ``count`` is of nodes.
     host : In(EntryAccess) for each updater
     next_index, index : Out
         The row of nodes that is fetched for the issue registers, and the one in them.

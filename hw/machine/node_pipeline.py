@@ -91,7 +91,8 @@ class NodePipeline:
         self._index = self.by_host(host.index)
 
     def build(self, inputs: dict[str, Value]):
-        """Write it all. ``inputs`` are the pipeline's sums, and what only some updaters have."""
+        """Add pipeline and memories to the module. ``inputs`` are the pipeline's sums of forces, and further inputs
+        that only some updaters have."""
         m, updater = self._m, self._updater
         inputs = inputs | {"velocity_shift": self._lines.later(updater.velocity_shift, 1)}
         for bit, value in self._item.stage.items():
@@ -176,7 +177,7 @@ class NodePipeline:
                 self._write(f"node_{name}", rams[name], own=own, by_host=by_host)
 
     def _update(self, pipe):
-        """A node's new state, with the last of its axes."""
+        """Drive ``update`` with a node's new state, in the cycle of the last of its axes."""
         updater, done = self._updater, self._datapath.done
         words = named(updater.update)
         for component, axes in self._carried.items():
@@ -190,7 +191,7 @@ class NodePipeline:
         ]
 
     def _memory(self, name: str, width: int, arrival: int, *, vector: bool = True) -> BlockRam:
-        """A word per node, or of a vector per item, read for ``arrival``, or for the host."""
+        """Return a memory of a word per node, or per item for a vector, read in time for ``arrival`` or by the host."""
         p = self._updater.parameters
         ram = BlockRam(width=width, depth=self._depth if vector else p.node_rows)
         self._m.submodules[name] = ram
@@ -200,7 +201,7 @@ class NodePipeline:
         return ram
 
     def _write(self, name: str, ram: BlockRam, *, vector: bool = True, by_host=None, own=None):
-        """Write (strobe, word) of the host and of the pipeline."""
+        """Connect a memory's write port: ``by_host`` and ``own`` are (strobe, word) of the host and of the pipeline."""
         host_address = self._host_address if vector else self._index
         own_address = self.later(self._item.address, self._datapath.done)
         uses = [
@@ -210,13 +211,14 @@ class NodePipeline:
         registered_ports(self._m, ram, name, self._active, *uses)
 
     def _near(self, name: str, ram: BlockRam, q) -> Value:
-        """Return a memory's word when the pipeline needs it, from a register where there is time for it."""
+        """Return a memory's word in the cycle in which the pipeline needs it, from a register if there is time for
+        one."""
         word = Signal(shape(q), name=f"near_{name}")
         self._m.d.comb += word.eq(self._lines.later(ram.data, self._early(self._arrival[name]), name=name))
         return word
 
     def _early(self, arrival: int) -> int:
-        """Return how many cycles a word that is needed then can be read before it must be: `NEAR`, if there is time."""
+        """Return the registers between memory and pipeline for a word that is needed then: `NEAR`, if there is time."""
         return NEAR if self._item.gathered + arrival - READ_LATENCY - PORT >= NEAR else 0
 
 

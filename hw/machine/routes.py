@@ -1,13 +1,13 @@
-"""Registers on long routes. Each constant is the length of a delay line: with another one the circuit computes the same
-integers, in more or fewer cycles, or refuses to be made."""
+"""Registers on long routes. Each constant is the length of a delay line: with another value the circuit computes the
+same integers in more or fewer cycles, or is refused."""
 
 from hw.blocks.memory import READ_LATENCY
 
 HANDOVER = 3
-"""Registers from the host port to the ports of a memory, with that at the ports: a run starts so much later."""
+"""Registers from the host port to a memory's ports, those at the ports included. A run starts that much later."""
 
 CHOICE = 2
-"""Cycles to choose a word from a memory's, then one from the lanes', then one from the regions'."""
+"""Cycles of each of three muxes in a row: of a memory's words, of the lanes, of the regions."""
 
 COPIED = 1
 """Registers from a node's new state to its copies in the lanes."""

@@ -22,8 +22,8 @@ def data_latency(p: Parameters) -> int:
 
 
 class RowIssue(wiring.Component):
-    """Reads a row, one edge for each lane, from the lanes' lists and issues it as soon as its nodes are updated: it
-    waits for the highest of the rows that they are in.
+    """Reads a row, one edge for each lane, from the lanes' lists and issues it as soon as its nodes are updated. Nodes
+    are updated in rows, so it waits for the highest row that one of them is in.
 
     Parameters
     ----------
@@ -34,12 +34,12 @@ class RowIssue(wiring.Component):
     Members
     -------
     flush, clear, count, control, advance, others, completion
-        As of `hw.machine.list_issue.ListIssue`.
+        As in `hw.machine.list_issue.ListIssue`.
     host : In(EntryAccess) for each lane
     next_index, next_edges : Out
         The row that is fetched for the issue registers, and its edges.
     edges : Out(lanes)
-        The lanes that get an edge of the row in the issue register.
+        A bit for each lane that gets an edge from the row in the issue register.
     """
 
     def __init__(self, parameters: Parameters, latency: int):
@@ -79,7 +79,7 @@ class RowIssue(wiring.Component):
             m.d.comb += entries.address.eq(issue.address)
             words.append(entries.entry)
         edges = [ENTRY.unpack(word) for word in words]
-        ends = [p.node_place(edge[end])[0][: p.node_row_bits] for edge in edges for end in "ij"]
+        ends = [p.node_address(edge[end])[0][: p.node_row_bits] for edge in edges for end in "ij"]
         compared = highest.latency(2 * p.lanes)
         later = [lines.later(word, compared, name=f"entry{number}") for number, word in enumerate(words)]
         wiring.connect(m, issue.control, wiring.flipped(self.control))

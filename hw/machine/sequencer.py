@@ -16,8 +16,8 @@ class Sequencer(wiring.Component):
     A row of a stage may go when its nodes have been updated in the stage before; a node may go when all its edges have
     been summed in its own stage. Rows and nodes go in the order of their lists, stage after stage, so that two counters
     are all the synchronisation there is. A node's update needs only rows of its own stage, and a row only updates of
-    the stage before: any order of the lists comes to its end. How far each of them has come in its stage is counted
-    outside (`hw.machine.completion_counter`); here it is known which stage that is.
+    the stage before, so no order of the lists can deadlock. `hw.machine.completion_counter` counts the entries that are
+    done in a stage; the sequencer keeps the stages.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Sequencer(wiring.Component):
     stop : In(1)
         End the run with the step that the updates are in, or with the next if they are past its first stage.
     busy : Out(1), steps_done : Out
-        The steps are counted a cycle late.
+        A run is under way; steps that are done, a cycle late.
     row, node : In(ListControl)
         A row waits for nodes updated in the stage that the updates are in, a node for rows summed in the stage that the
         sums are in.
@@ -115,8 +115,8 @@ class Sequencer(wiring.Component):
         with m.If(self.stop):
             m.d.sync += stopping.eq(1)
 
-        # A step's last stage is over, of its rows, nodes and updates. The steps are counted a cycle later: each is
-        # longer than the cycles that it takes to see which is the last
+        # The last stage of a step ends for its rows, nodes and updates in turn. The steps are counted a cycle later; a
+        # step takes long enough for the count to tell in time which one is the last
         for name, stage, done in (
             ("row", row_stage, row_stage_done),
             ("node", node_stage, node_stage_done),
@@ -146,7 +146,7 @@ class Sequencer(wiring.Component):
         return m
 
     def _rested(self, m):
-        """1 if a node that is ready now is issued when the one before has had its cycles."""
+        """Return 1 if a node that is ready now will be issued after the cycles of the node before it."""
         rest = Signal(range(self._cycles_per_node), name="rest")
         with m.If(self.node.issue):
             m.d.sync += rest.eq(self._cycles_per_node - 2)

@@ -46,18 +46,18 @@ class SerialNodeUpdater(wiring.Component):
         return m
 
     def _pulls(self, m, lines) -> dict:
-        """The sums on a node, which come side by side, one axis after the other."""
-        others = Signal.like(self.mask, name="others")
-        m.d.comb += others.eq(~self.mask)
-        others = lines.later(others, READ)
+        """Return the pipeline's sums: those on a node come together, and enter it one axis after the other."""
+        unused = Signal.like(self.mask, name="unused_banks")
+        m.d.comb += unused.eq(~self.mask)
+        unused = lines.later(unused, READ)
         load = lines.later(self.valid, READ, name="load", reset=True)
         inputs = {}
         for bank, sums in enumerate(banks(self.sums)):
             following = None
             for axis in reversed(AXES):
                 pull = Signal.like(sums[axis], name=f"pull{bank}_{axis}", reset_less=True)
-                shown = Mux(others[bank], 0, sums[axis])
-                m.d.sync += pull.eq(shown if following is None else Mux(load, shown, following))
+                own = Mux(unused[bank], 0, sums[axis])
+                m.d.sync += pull.eq(own if following is None else Mux(load, own, following))
                 following = pull
             inputs[f"pull{bank}_{IN_TURN[0]}"] = lines.later(following, GATHERED - READ - 1)
         return inputs

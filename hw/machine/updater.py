@@ -14,8 +14,8 @@ from hw.pipeline.delay import DelayLines
 
 
 class NodeUpdater(wiring.Component):
-    """`golden.datapath.node.node` as a pipeline, with the memories of the nodes' own words: of one node in each row of
-    nodes. `hw.machine.serial_updater.SerialNodeUpdater` has the same ports and takes an axis at a time.
+    """`golden.datapath.node.node` as a pipeline, with the memories of its nodes, one of each row of nodes.
+    `hw.machine.serial_updater.SerialNodeUpdater` has the same ports and takes an axis at a time.
 
     Latency: a node's new state is on ``update`` ``datapath.latency`` cycles after it was issued. Throughput one node in
     ``datapath.cycles_per_node`` cycles.
@@ -23,11 +23,11 @@ class NodeUpdater(wiring.Component):
     Members
     -------
     valid, row : In
-        The row of the node that is issued.
+        A node is issued; its row.
     mask : In
-        The accumulators that hold a force on it, two for each lane (first ends, second ends); read with the node.
+        A bit for each accumulator that holds a force on it: first ends of all lanes, then second ends.
     stage : In(StageBits)
-        Of the node that is issued.
+        The stage of the node that is issued.
     velocity_shift : In
         Constant while steps are run.
     sums : In(NodeSums) for each lane
@@ -48,13 +48,13 @@ class NodeUpdater(wiring.Component):
         carried = {axis: (axis,) for axis in AXES}
         address = lines.later(self.host.index, HANDOVER - PORT, reset=True)
         pipeline = NodePipeline(m, lines, self, item, carried, self.parameters.node_rows, address)
-        others = Signal.like(self.mask, name="others")
-        m.d.comb += others.eq(~self.mask)
-        others, inputs = lines.later(others, READ), {}
+        unused = Signal.like(self.mask, name="unused_banks")
+        m.d.comb += unused.eq(~self.mask)
+        unused, inputs = lines.later(unused, READ), {}
         for bank, sums in enumerate(banks(self.sums)):
             for axis in AXES:
                 pull = Signal.like(sums[axis], name=f"pull{bank}_{axis}", reset_less=True)
-                m.d.sync += pull.eq(Mux(others[bank], 0, sums[axis]))
+                m.d.sync += pull.eq(Mux(unused[bank], 0, sums[axis]))
                 inputs[f"pull{bank}_{axis}"] = lines.later(pull, GATHERED - READ - 1)
         pipeline.build(inputs)
         lines.build()

@@ -22,10 +22,10 @@ def choose(m: Module, lines: DelayLines, words: list, index, *, cycles: int, nam
     for level in range(cycles):
         groups = [words[first : first + WAYS] for first in range(0, len(words), WAYS)]
         if len(words) > 1:
-            way = lines.later(index[BITS * level : BITS * (level + 1)], ahead + level, name=f"{name}_way{level}")
+            way = lines.later(index[BITS * level : BITS * (level + 1)], ahead + level, name=f"{name}_select{level}")
         words = []
         for number, group in enumerate(groups):
-            chosen = Signal(max(map(len, group)), name=f"{name}_{level}_{number}", reset_less=True)
+            chosen = Signal(max(map(len, group)), name=f"{name}_mux{level}_{number}", reset_less=True)
             m.d.sync += chosen.eq(Array(group)[way] if len(group) > 1 else group[0])
             words.append(chosen)
     return words[0]

@@ -1,4 +1,4 @@
-"""The registers that each operation of the datapath costs, in one place."""
+"""The number of registers after each operation of the datapath, in one place."""
 
 from dataclasses import dataclass
 

@@ -16,10 +16,12 @@ from golden.numbers.qformat import Q
 
 
 def shape(q: Q) -> Shape:
+    """Return the shape of a format's integers."""
     return Shape(q.width, q.signed)
 
 
 def negative(x: Value) -> Value:
+    """Return 1 if ``x`` is negative."""
     return x[-1] if x.shape().signed else Const(0)
 
 

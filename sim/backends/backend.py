@@ -70,10 +70,12 @@ class Backend(ABC):
         return {setting.name for setting in fields(cls)}
 
     def check(self) -> None:  # noqa: B027
-        """Raise `InputError` for settings that can't be used, before anything is run or written."""
+        """Raise `golden.support.errors.InputError` for settings that can't be used, before anything is run or
+        written."""
 
     def connect(self) -> Backend:
-        """Return the backend with its device reached, if it has one. Raises `InputError` if that can't be reached."""
+        """Return the backend with its device reached, if it has one. Raises `golden.support.errors.InputError` if that
+        can't be reached."""
         return self
 
     def close(self) -> None:  # noqa: B027
@@ -95,7 +97,7 @@ class IntegerBackend(Backend):
     integers = True
 
     def check_room(self, encoded: EncodedScene) -> None:
-        """Raise `InputError` for a scene that is too large."""
+        """Raise `golden.support.errors.InputError` for a scene that is too large."""
 
     def witness(self, image: MemoryImage) -> Witness | None:
         """Return what computes single steps again, if its machine has to be checked so."""

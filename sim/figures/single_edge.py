@@ -19,7 +19,8 @@ EVERY = 5  # steps between two frames
 
 
 def scene(name: str, material: Material) -> Scene:
-    """Return the scene of an upright edge, fixed below. Raises `InputError` if the stable dt is below `DT`."""
+    """Return the scene of an upright edge, fixed below. Raises `golden.support.errors.InputError` if the stable dt is
+    below `DT`."""
     mesh = Mesh(np.array([[0.0, 0.0], [0.0, LENGTH]]), np.empty((0, 3), np.int64), np.array([[0, 1]]))
     foot, head, none = np.array([True, False]), np.array([False, True]), np.zeros(2, bool)
     still, down = np.zeros((2, 2)), np.array([[0.0, 0.0], [0.0, -DEPTH / (PRESS * DT)]])

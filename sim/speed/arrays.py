@@ -32,7 +32,7 @@ class Arrays(NamedTuple):
     start: np.ndarray  # (N + 1,) and the j of edges where[start[n]] to where[start[n + 1]]
     where: np.ndarray  # (E,)
     edge: np.ndarray  # (9, E) see above
-    gap: np.ndarray  # (2 dim, E) x[j] - x[i], v[j] - v[i]; then da/dt in row `dim`
+    gap: np.ndarray  # (2 dim, E) x[j] - x[i], v[j] - v[i]; then da/dt in row ``dim``
     pull: np.ndarray  # (dim, E) force on node i
     node: np.ndarray  # (2 dim, N) x and v at the stage
     base: np.ndarray  # (2 dim, N) before the step
