@@ -140,7 +140,7 @@ def cycles_per_node(holder) -> int:
     return len(AXES) // holder.axes
 
 
-def shown(holder) -> dict[str, str]:
+def size_texts(holder) -> dict[str, str]:
     """Return the sizes as text. The axes show in the updates per cycle, as in 1/3."""
     texts = {name: str(size) for name, size in sizes_of(holder).items() if name != "axes"}
     if (cycles := cycles_per_node(holder)) > 1:
@@ -150,4 +150,4 @@ def shown(holder) -> dict[str, str]:
 
 def summary(holder) -> str:
     """Return all sizes as text for a sentence."""
-    return ", ".join(f"{n} {name.removesuffix('s') if n == '1' else name}" for name, n in shown(holder).items())
+    return ", ".join(f"{n} {name.removesuffix('s') if n == '1' else name}" for name, n in size_texts(holder).items())

@@ -133,13 +133,13 @@ def interpolate_inverse(fmt, tables, square):
 
 def damper(fmt, tables, material, size, g, g_shift):
     """Return rho and sigma, each a mantissa and a shift, at |g| = size, whose mantissa is g."""
-    # The place of |g| among the table's segments: octaves, and the fraction of an octave, which is linear in |g|
+    # The position of |g| among the table's segments: octaves, and the fraction of an octave, which is linear in |g|
     octave_fraction = g.field(0, fmt.octave_fraction)
     octaves = octave_fraction - (g_shift + material.first_octave)
     finest = Q(octaves.fmt.int_bits + fmt.fineness.raw_max, fmt.damper_fraction.width)  # loses nothing
-    place = octaves.to(finest).to(finest, left=material.fineness)  # segment, fraction of it
-    segment = place.field(finest.frac_bits, fmt.damper_index)
-    fraction = place.field(0, fmt.damper_fraction)
+    table_position = octaves.to(finest).to(finest, left=material.fineness)  # segment, fraction of it
+    segment = table_position.field(finest.frac_bits, fmt.damper_index)
+    fraction = table_position.field(0, fmt.damper_fraction)
     word = tables.damper(material.table, segment)
     rho_middle = cut(word.rho_value - word.rho_slope * fraction, fmt.mantissa)
     sigma_middle = cut(word.sigma_value + word.sigma_slope * fraction, fmt.mantissa)
@@ -155,7 +155,7 @@ def damper(fmt, tables, material, size, g, g_shift):
     sigma_shift = branch(material.sigma_low_shift, word.sigma_shift, material.sigma_high_shift)
     return (
         {"octave_fraction": octave_fraction, "octaves": octaves}
-        | {"place": place, "segment": segment, "fraction": fraction}
+        | {"table_position": table_position, "segment": segment, "fraction": fraction}
         | {"rho_middle": rho_middle, "sigma_middle": sigma_middle, "below": below, "between": between}
         | {"rho": rho, "rho_shift": rho_shift, "sigma": sigma, "sigma_shift": sigma_shift}
     )

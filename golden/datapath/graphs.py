@@ -7,7 +7,7 @@ from golden.datapath.edge import edge
 from golden.datapath.formats import Formats
 from golden.datapath.node import node
 from golden.datapath.rk4 import RK4
-from golden.numbers.graph import AXES, IN_TURN, Graph
+from golden.numbers.graph import AXES, SERIAL_AXIS, Graph
 from golden.numbers.qformat import BIT
 
 EDGE_OUTPUTS = ["pull", "base_next", "ratio_next", "total_next"]
@@ -50,16 +50,16 @@ def edge_graph(fmt: Formats, tables: int) -> Graph:
 def node_graph(fmt: Formats, banks: int, axes: tuple[str, ...] = AXES) -> Graph:
     """Return `golden.datapath.node.node` as a graph, for ``banks`` accumulators a node.
 
-    With the axes `golden.numbers.graph.IN_TURN` the components of a node's vectors come one after the other;
-    ``first_turn`` is 1 with the first of them.
+    With the axes `golden.numbers.graph.SERIAL_AXIS` the components of a node's vectors come one after the other;
+    ``first_axis`` is 1 with the first of them.
 
     Inputs: ``stage_*``, ``velocity_shift``, ``pull<bank>_*``, ``load_*``, ``inverse_mass_*``, ``x_base_*``,
     ``v_base_*``, ``v_*``, ``x_total_*``, ``v_total_*``. Outputs: ``force_*``, ``x_*``, ``v_*``, ``x_base_next_*``,
     ``v_base_next_*``, ``x_total_*``, ``v_total_*``.
     """
     graph = Graph(axes=axes)
-    if axes == IN_TURN:
-        graph.input("first_turn", BIT)
+    if axes == SERIAL_AXIS:
+        graph.input("first_axis", BIT)
     stage, shift = _stage(graph), graph.input("velocity_shift", fmt.exponent)
     pulls = [graph.vector(f"pull{bank}", fmt.accumulator) for bank in range(banks)]
     load = graph.vector("load", fmt.accumulator)

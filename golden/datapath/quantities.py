@@ -68,7 +68,7 @@ EDGE = (
     # Force-dependent damper
     Quantity("octave_fraction", "fraction of an octave"),
     Quantity("octaves", "octaves above the first segment"),
-    Quantity("place", "segment of the damper table, and fraction of it"),
+    Quantity("table_position", "segment of the damper table, and fraction of it"),
     Quantity("segment", "segment of the damper table"),
     Quantity("fraction", "fraction of the segment"),
     Quantity("rho_middle", "rho in the middle branch"),

@@ -11,7 +11,7 @@ from golden.numbers.qformat import BIT, Q, count, smallest, total, unsigned
 from golden.numbers.record import Record
 
 AXES = ("x", "y", "z")
-IN_TURN = ("turn",)
+SERIAL_AXIS = ("axis",)
 """The axes of a graph in which the components of a vector come one after the other: it has one component at a time."""
 
 
@@ -91,7 +91,7 @@ class Operation:
     @staticmethod
     def lead(vector, most):
         graph = vector[0].graph
-        if graph.axes == IN_TURN:
+        if graph.axes == SERIAL_AXIS:
             vector = [graph.gather(vector[0])]
         return vector[0]._make("lead", count(most), *vector, detail=most)
 
@@ -116,7 +116,7 @@ class Graph:
         Bits that report a fault of that name, besides the saturation of every ``round`` and ``shift_right`` to a
         format with a name.
     axes : tuple of str
-        Suffixes of the names of a vector's components: `AXES` or `IN_TURN`.
+        Suffixes of the names of a vector's components: `AXES` or `SERIAL_AXIS`.
     """
 
     operations: list[Operation] = field(default_factory=list)
@@ -152,7 +152,7 @@ class Graph:
     def gather(self, x: Operation) -> Operation:
         """Return the OR of the magnitudes of all components, for components that come one after the other."""
         size = unsigned(x.fmt.int_bits - x.fmt.signed, x.fmt.frac_bits)
-        return self.add("gather", size, (x, self.inputs["first_turn"]))
+        return self.add("gather", size, (x, self.inputs["first_axis"]))
 
     def read(self, table: str, word: Record, *index: Operation) -> SimpleNamespace:
         """Return the word of ``table`` at ``index``, as a namespace of its fields."""

@@ -21,7 +21,7 @@ QUANTITIES = [
     ("dashpot", "c1 dl/dt", ("dashpot",)),
     ("trial", "g = k (a l - L) + c1 dl/dt", ("trial",)),
     ("g", "|g|, normalised, and its sign", ("negative", "size", "g", "below", "between")),
-    ("table", "address and word of rho and sigma", ("octaves", "place", "sigma_shift_read")),
+    ("table", "address and word of rho and sigma", ("octaves", "table_position", "sigma_shift_read")),
     ("rho", "c2 / (c1 + c2) at |g|", ("rho_middle", "rho")),
     ("sigma", "1 / (c1 + c2) at |g|", ("sigma_middle", "sigma")),
     ("trials", "g u", ("along", "trials")),

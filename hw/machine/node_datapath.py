@@ -4,7 +4,7 @@ from functools import cached_property
 
 from golden.datapath.formats import Formats
 from golden.datapath.graphs import node_graph
-from golden.numbers.graph import AXES, IN_TURN
+from golden.numbers.graph import AXES, SERIAL_AXIS
 from hw.machine.accumulator import READ
 from hw.pipeline.cost import Cost
 from hw.pipeline.schedule import Schedule
@@ -22,7 +22,7 @@ class NodeDatapath:
 
     def __init__(self, formats: Formats, lanes: int, cost: Cost, cycles_per_node: int = 1):
         self.formats, self.cost, self.banks, self.cycles_per_node = formats, cost, 2 * lanes, cycles_per_node
-        self.axes = AXES if cycles_per_node == 1 else IN_TURN
+        self.axes = AXES if cycles_per_node == 1 else SERIAL_AXIS
 
     @cached_property
     def graph(self):
@@ -32,7 +32,7 @@ class NodeDatapath:
 
     @cached_property
     def schedule(self):
-        late = {name for name in self.graph.inputs if not name.startswith(("pull", "velocity_shift", "first_turn"))}
+        late = {name for name in self.graph.inputs if not name.startswith(("pull", "velocity_shift", "first_axis"))}
         return Schedule(self.graph, self.cost, late=late, static={"velocity_shift"})
 
     @cached_property

@@ -3,7 +3,7 @@
 from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 
-from golden.numbers.graph import AXES, IN_TURN
+from golden.numbers.graph import AXES, SERIAL_AXIS
 from hw.machine.accumulator import READ
 from hw.machine.axis_serializer import AxisSerializer
 from hw.machine.interfaces import named
@@ -38,10 +38,10 @@ class SerialNodeUpdater(wiring.Component):
 
         # The serializer is one of the registers between the issue of a node and its sums
         item = Item(serializer.valid, serializer.last, row, address, stage, GATHERED - 1)
-        carried, depth = {IN_TURN[0]: AXES}, len(AXES) << len(row)
+        carried, depth = {SERIAL_AXIS[0]: AXES}, len(AXES) << len(row)
         index, axis = (lines.later(port, HANDOVER - PORT, reset=True) for port in (self.host.index, self.host.axis))
         pipeline = NodePipeline(m, lines, self, item, carried, depth, Cat(index[: len(row)], axis))
-        pipeline.build({"first_turn": pipeline.later(serializer.first, 0)} | self._pulls(m, lines))
+        pipeline.build({"first_axis": pipeline.later(serializer.first, 0)} | self._pulls(m, lines))
         lines.build()
         return m
 
@@ -59,5 +59,5 @@ class SerialNodeUpdater(wiring.Component):
                 own = Mux(unused[bank], 0, sums[axis])
                 m.d.sync += pull.eq(own if following is None else Mux(load, own, following))
                 following = pull
-            inputs[f"pull{bank}_{IN_TURN[0]}"] = lines.later(following, GATHERED - READ - 1)
+            inputs[f"pull{bank}_{SERIAL_AXIS[0]}"] = lines.later(following, GATHERED - READ - 1)
         return inputs
