@@ -1,11 +1,11 @@
-# Every target runs in the checkout's own virtual environment; environment.py sets it up, once.
+# Every target runs in the checkout's own virtual environment, which environment.py sets up once.
 PYTHON ?= python3
 JOBS ?= 2
 LANES ?= 2
 UPDATES ?= 1
 BOARD ?= ulx3s-85f
 
-# This make's flags must not reach the makes that Verilator and cocotb start.
+# Keep this make's flags from the makes that Verilator and cocotb start.
 run := env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL AMARANTH_USE_YOSYS=builtin .venv/bin/python
 lower = $(shell echo $(1) | tr A-Z a-z)
 option = --$(call lower,$(1)) $($(1))
@@ -21,31 +21,31 @@ pytest := $(run) -m pytest -n $(JOBS) --dist loadfile --durations 10
 .NOTPARALLEL:
 .PHONY: compare figures verilog timing bitstream flash doctor bench test verify lint lock help clean distclean environment
 
-compare: verilog ## (or nothing) emit the Verilog, run all shipped scenes on float64, integers and simulated circuit
+compare: verilog ## the default: emit the Verilog, run all shipped scenes on float64, integers and the simulated circuit
 	@$(run) -m sim compare scenes/*.toml --lanes $(LANES) --updates $(UPDATES) --out build/report
 	@echo "report: build/report/index.html, figures: build/report/compare.json"
 
 figures: environment ## draw the paper's figures from runs of the circuit: PNG, SVG, GIF and their numbers in build/figures
 	@$(run) -m sim figures --out build/figures
 
-verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES=, AXES= choose its size, FAMILY= its hard blocks
+verilog: environment ## write the circuit's Verilog below build/; LANES=, UPDATES=, NODES=, EDGES=, MATERIALS=, TABLES=, AXES= set its size, FAMILY= its hard blocks
 	@$(run) -m hw verilog $(sizes) $(family) --out build/verilog
 
-timing: environment ## place and route for BOARD=, a file below constraints/: clock and sizes; LANES= ... as above, SEEDS="1 2 3", JOBS=, KEEP=1 publishes
+timing: environment ## place and route for BOARD=, a file below constraints/, and report clock and use; LANES= ... as above, SEEDS="1 2 3", JOBS=, KEEP=1 publishes
 	@$(run) -m hw timing --board $(BOARD) $(given) \
 	    $(if $(SEEDS),--seeds $(SEEDS)) --jobs $(JOBS) $(if $(KEEP),--keep)
 
-bitstream: environment ## build what is loaded into BOARD=, or a project for its vendor's tool; LANES= ... as above, KEEP=1 publishes
+bitstream: environment ## build the bitstream for BOARD=, or a project for its vendor's tool; LANES= ... as above, KEEP=1 publishes
 	@$(run) -m hw bitstream --board $(BOARD) $(given) \
 	    $(if $(KEEP),--keep)
 
-flash: environment ## load it into BOARD=; PERMANENT=1 to be there at power-on
+flash: environment ## load the bitstream into BOARD=; PERMANENT=1 into its flash, for every power-on
 	@$(run) -m hw flash --board $(BOARD) $(if $(PERMANENT),--permanent)
 
-doctor: environment ## list what is installed, what is missing, what to do about it
+doctor: environment ## list tools, packages, boards and ports; say what is missing and what to do
 	@$(run) -m hw doctor
 
-bench: environment ## time the circuit's step and that of software on this machine: keep the machine idle meanwhile
+bench: environment ## time a step of the circuit and of software on this machine, which must be idle meanwhile
 	@$(run) -m sim bench --out build/bench.json
 
 test: environment ## run the tests

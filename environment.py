@@ -1,9 +1,10 @@
-"""The checkout's virtual environment: names what pip can't bring, then installs requirements.lock, once.
+"""Set up the checkout's virtual environment: report missing system packages, then install requirements.lock once.
 
-    python3 environment.py           what the Makefile's targets start with
-    python3 environment.py --lock    resolves the pins of pyproject.toml again and writes requirements.lock
+    python3 environment.py           check and install; the Makefile's targets begin with it
+    python3 environment.py --lock    resolve the pins of pyproject.toml again and write requirements.lock
 
-Standard library only, no syntax newer than Python 3.6: an old `python3` must reach the line that refuses it.
+It uses the standard library only, and no syntax newer than Python 3.6: an old ``python3`` must reach the line that
+refuses it.
 """
 
 import ctypes
@@ -22,14 +23,14 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent
 OLDEST = (3, 11)
 VERSION = "{}.{}".format(*sys.version_info)
-# program -> (what it is, Debian's package)
+# program -> (description, Debian package)
 PROGRAMS = {"c++": ("a C++ compiler (c++)", "g++"), "make": ("make", "make"), "perl": ("perl", "perl")}
-# what only the tests of the report's page need: they are skipped without it
+# only for tests of the report's page, which are skipped without it
 BROWSER = {"chromium": ("a browser (chromium)", "chromium")}
 
 
 def libpython():
-    """Whether this Python's shared library can be loaded: cocotb embeds the interpreter in the simulator."""
+    """Return whether this Python's shared library can be loaded; cocotb embeds the interpreter in the simulator."""
     name = sysconfig.get_config_var("INSTSONAME") or ""
     architecture = sysconfig.get_config_var("MULTIARCH") or ""
     folders = [pathlib.Path(sysconfig.get_config_var("LIBDIR") or "/"), pathlib.Path(sys.base_prefix, "lib")]
@@ -45,7 +46,7 @@ def libpython():
 
 
 def checked():
-    """(what it is, Debian's package, whether it is there) of each thing that pip can't bring."""
+    """Return (description, Debian package, whether it is there) of each requirement that pip can't install."""
     programs = [(what, package, bool(shutil.which(program))) for program, (what, package) in PROGRAMS.items()]
     venv = bool(importlib.util.find_spec("venv") and importlib.util.find_spec("ensurepip"))
     return programs + [
@@ -55,12 +56,12 @@ def checked():
 
 
 def browser():
-    """As `checked`, of what only some tests need."""
+    """Return the same as `checked` for what only some tests need."""
     return [(what, package, bool(shutil.which(program))) for program, (what, package) in BROWSER.items()]
 
 
 def missing():
-    """One line for each thing the machine lacks and pip can't bring, with what to install."""
+    """Return a line for each missing requirement that pip can't install, with the package to install."""
     if sys.version_info < OLDEST:
         return [
             f"python3 must be Python {OLDEST[0]}.{OLDEST[1]} or newer, not {VERSION}: install one, "
@@ -84,12 +85,12 @@ def pip(python):
 def install(root=ROOT):
     """Make root/.venv agree with root/requirements.lock and this Python; do nothing when it already does.
 
-    The stamp is written last, so an interrupted installation is started again from nothing.
+    The stamp is written last, so an interrupted installation starts again from scratch.
     """
     lock, venv = root / "requirements.lock", root / ".venv"
     stamp, python = venv / "installed", venv / "bin" / "python"
     with lock.open("rb") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)  # two makes at once: the second waits and finds everything done
+        fcntl.flock(file, fcntl.LOCK_EX)  # of two makes at once the second waits and finds everything installed
         wanted = f"{hashlib.sha256(file.read()).hexdigest()} {sys.base_prefix} {sys.version}\n"
         if python.exists() and stamp.exists() and stamp.read_text() == wanted:
             return
@@ -100,7 +101,7 @@ def install(root=ROOT):
 
 
 def resolve(root=ROOT):
-    """Write root/requirements.lock: the pins of root/pyproject.toml and all that they need."""
+    """Write root/requirements.lock: the pins of root/pyproject.toml and all their dependencies."""
     import tomllib
 
     direct = tomllib.loads((root / "pyproject.toml").read_text())["project"]["dependencies"]
@@ -114,7 +115,7 @@ def resolve(root=ROOT):
 
 
 def main(arguments):
-    """Exit code: 0, 2 when something is missing or the installation fails, 130 when it is interrupted."""
+    """Return the exit code: 0, 2 if something is missing or the installation fails, 130 if it is interrupted."""
     lines = missing()
     for line in lines:
         print("error: " + line, file=sys.stderr)

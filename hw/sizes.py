@@ -1,4 +1,4 @@
-"""The sizes of a circuit, each once.
+"""The sizes of a circuit, in one table.
 
 Parameters, options, boards' files and tables, manifest, the link's identity and the control registers follow from here.
 """
@@ -33,16 +33,16 @@ class Size:
     Attributes
     ----------
     name : str
-        In options and files, with an s for a count.
+        Name in options and files, a plural for a count.
     meaning : str
         For help, manifest and documentation.
     default : int
     small : int
         Its value in the smallest circuit, which is placed in minutes.
     allowed : range or tuple of int
-        A range without steps, or the few values that there are.
+        A range without steps, or a few values.
     letter : str
-        Stands for the value in the help text.
+        Placeholder of the value in the help text.
     held : Constant
         The control register, if it holds something else than the size itself.
     optional : bool
@@ -140,8 +140,8 @@ def cycles_per_node(holder) -> int:
     return len(AXES) // holder.axes
 
 
-def size_texts(holder) -> dict[str, str]:
-    """Return the sizes as text. The axes show in the updates per cycle, as in 1/3."""
+def format_sizes(holder) -> dict[str, str]:
+    """Return the sizes as text. The axes appear in the updates per cycle, as in 1/3."""
     texts = {name: str(size) for name, size in sizes_of(holder).items() if name != "axes"}
     if (cycles := cycles_per_node(holder)) > 1:
         texts["updates"] += f"/{cycles}"
@@ -149,5 +149,5 @@ def size_texts(holder) -> dict[str, str]:
 
 
 def summary(holder) -> str:
-    """Return all sizes as text for a sentence."""
-    return ", ".join(f"{n} {name.removesuffix('s') if n == '1' else name}" for name, n in size_texts(holder).items())
+    """Return all sizes in words, for a sentence."""
+    return ", ".join(f"{n} {name.removesuffix('s') if n == '1' else name}" for name, n in format_sizes(holder).items())

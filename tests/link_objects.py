@@ -26,8 +26,8 @@ async def taken(ctx, receiver):
     """(type, seq, payload) of the frame that waits first; it is taken."""
     assert ctx.get(receiver.frame)
     payload = []
-    for place in range(ctx.get(receiver.length)):
-        ctx.set(receiver.place, place)
+    for index in range(ctx.get(receiver.length)):
+        ctx.set(receiver.index, index)
         for _ in range(READ_LATENCY):
             await ctx.tick()
         payload.append(ctx.get(receiver.byte))

@@ -1,4 +1,4 @@
-"""environment.py: what is missing is named, nothing is installed twice, an interruption is made good."""
+"""environment.py: missing packages are named, nothing is installed twice, an interrupted installation starts again."""
 
 import re
 import shutil
@@ -16,7 +16,7 @@ from environment import ROOT, VERSION
 
 @pytest.fixture
 def lacking(monkeypatch):
-    """A machine without the programs and modules named."""
+    """Give a function that takes programs and modules away from the machine."""
 
     def lack(*names):
         which, find = environment.shutil.which, environment.importlib.util.find_spec
@@ -42,25 +42,25 @@ def lacking(monkeypatch):
         ),
     ],
 )
-def test_names_what_is_missing(lacking, monkeypatch, capsys, name, message):
+def test_a_missing_package_is_named(lacking, monkeypatch, capsys, name, message):
     monkeypatch.setattr(environment, "install", lambda: pytest.fail("nothing may be installed"))
     lacking(name)
     assert environment.main([]) == 2
     assert capsys.readouterr().err == message + "\n"
 
 
-def test_names_all_that_is_missing(lacking):
+def test_all_missing_packages_are_named(lacking):
     lacking("c++", "perl")
     assert len(environment.missing()) == 2
 
 
-def test_a_browser_is_looked_for_but_nothing_waits_for_it(lacking):
+def test_a_missing_browser_is_reported_but_not_required(lacking):
     lacking("chromium")
     assert environment.browser() == [("a browser (chromium)", "chromium", False)]
     assert environment.missing() == []
 
 
-def test_old_python(monkeypatch):
+def test_an_old_python_is_refused(monkeypatch):
     monkeypatch.setattr(environment, "OLDEST", (3, 99))
     assert environment.missing() == [
         f"python3 must be Python 3.99 or newer, not {VERSION}: install one, "
@@ -68,7 +68,7 @@ def test_old_python(monkeypatch):
     ]
 
 
-def test_shared_library_is_looked_for(monkeypatch):
+def test_a_missing_shared_library_is_noticed(monkeypatch):
     assert environment.libpython()
     monkeypatch.setattr(environment.sysconfig, "get_config_var", lambda name: None)
     monkeypatch.setattr(environment.ctypes.util, "find_library", lambda name: None)
@@ -77,7 +77,7 @@ def test_shared_library_is_looked_for(monkeypatch):
 
 @pytest.fixture
 def checkout(tmp_path, monkeypatch):
-    """A checkout with an empty lock, and what would be run in it: a real installation is what ran this test."""
+    """Give (a checkout with an empty lock, the commands run in it); no command really runs."""
     ran = []
 
     def run(*command):
@@ -92,7 +92,7 @@ def checkout(tmp_path, monkeypatch):
     return tmp_path, ran
 
 
-def test_installs_once(checkout):
+def test_the_second_time_nothing_is_installed(checkout):
     root, ran = checkout
     for _ in range(2):
         environment.install(root)
@@ -100,22 +100,22 @@ def test_installs_once(checkout):
 
 
 @pytest.mark.parametrize(
-    "disturb",
+    "change",
     [
-        lambda root: (root / ".venv" / "installed").unlink(),  # what an interruption leaves behind
-        lambda root: (root / ".venv" / "bin" / "python").unlink(),  # the Python it was made from has gone
+        lambda root: (root / ".venv" / "installed").unlink(),  # as an interruption leaves it
+        lambda root: (root / ".venv" / "bin" / "python").unlink(),  # the Python that made it was removed
         lambda root: (root / "requirements.lock").write_text("numpy==2.4.6\n"),
     ],
 )
-def test_installs_again(checkout, disturb):
+def test_a_changed_checkout_is_installed_again(checkout, change):
     root, ran = checkout
     environment.install(root)
-    disturb(root)
+    change(root)
     environment.install(root)
     assert ran == ["venv", "pip"] * 2
 
 
-def test_failed_installation(checkout, monkeypatch, capfd):
+def test_a_failed_installation_is_one_error(checkout, monkeypatch, capfd):
     root, _ = checkout
 
     def fail(*command):

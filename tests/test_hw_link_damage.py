@@ -9,12 +9,13 @@ from link_objects import KEY
 from linked import ITEMS, Line
 from test_hw_link_device import X, access, hello, read, write
 
-from hw.link.bound import Work, cycles
+from hw.link.bound import cycles
 from hw.link.frame import LEAST, FrameError, unpacked
 from hw.link.interfaces import EVENTS
 from hw.link.protocol import Status
 from hw.link.registers import LINK, Link
 from hw.link.send import LOOK
+from hw.link.work import Work
 from hw.map.memory_map import join
 
 MILLION = 1_000_000

@@ -17,8 +17,8 @@ async def stored(ctx, dut, number, frame):
     body = HEADER.pack(frame.type, frame.seq, frame.status, 0, len(frame.payload)) + frame.payload
     ctx.set(dut.write, 1)
     ctx.set(dut.write_answer, number)
-    for place, byte in enumerate(body):
-        ctx.set(dut.write_place, place)
+    for index, byte in enumerate(body):
+        ctx.set(dut.write_index, index)
         ctx.set(dut.write_data, byte)
         await ctx.tick()
     ctx.set(dut.write, 0)

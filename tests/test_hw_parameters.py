@@ -10,7 +10,7 @@ from golden.datapath.formats import Formats
 from hw.map.control import Control
 from hw.map.memory_map import ADDRESS, Map, Region, join
 from hw.parameters import Parameters
-from hw.sizes import size_texts
+from hw.sizes import format_sizes
 
 RANGES = {
     "lanes": (1, 8),
@@ -43,7 +43,7 @@ def test_an_updater_takes_one_axis_or_all(axes):
 def test_an_updater_takes_a_cycle_for_each_share_of_a_nodes_axes():
     assert (Parameters(axes=3).cycles_per_node, Parameters(axes=1).cycles_per_node) == (1, 3)
     circuits = [Parameters(updates=updates, axes=axes) for updates in (1, 2) for axes in (3, 1)]
-    assert [size_texts(circuit)["updates"] for circuit in circuits] == ["1", "1/3", "2", "2/3"]
+    assert [format_sizes(circuit)["updates"] for circuit in circuits] == ["1", "1/3", "2", "2/3"]
 
 
 @pytest.mark.parametrize("family", ["x", "ECP5", "", None])

@@ -85,14 +85,16 @@ def test_memories_that_differ_are_noticed(service, rng):
     CircuitMachine(image, board, verify=verify)
     address, word = next((a, w) for a, w in writes if Region(a >> 24) == Region.EDGE)
     board.write([(address, word ^ 1)])
-    with pytest.raises(LinkError, match="the circuit must hold what it was sent, but the CRC of its memories differs"):
+    with pytest.raises(LinkError, match="the circuit's memories must hold what was written, but their CRC differs"):
         board.verify(writes)
     board.close()
 
 
-def test_what_the_circuit_refuses_is_told(service):
+def test_a_refused_write_is_an_error(service):
     board = Board.at(service.url)
-    with pytest.raises(CommandRefused, match="the circuit must do what it is told, but says: refused"):
+    with pytest.raises(
+        CommandRefused, match="the circuit must accept each command, but answered REFUSED: at least one word was"
+    ):
         board.write([(control(Control.MAGIC), 1)])
     board.close()
 
@@ -113,7 +115,7 @@ def test_a_reset_in_between_is_noticed(rng):
     service = Service(circuit)
     board = Board.at(service.url, timeout=1)
     circuit.reset()
-    with pytest.raises(LinkError, match="the circuit must stay as it is while it is used, but it was reset"):
+    with pytest.raises(LinkError, match="the circuit must not be reset while it is used, but it was: start again"):
         board.read([control(Control.MAGIC)])
     board.close()
     service.stop()
@@ -181,17 +183,17 @@ def test_a_circuit_with_another_map_is_refused(service, monkeypatch):
     other = key(Parameters())
     monkeypatch.setattr(driver, "key", lambda parameters: other)
     message = (
-        f"--port must lead to a circuit with memory map {other.hex()}, as this version has, but the one at "
-        f"{service.url} has {key(SMALL).hex()}: build it anew (make bitstream), or use the version that it was "
-        "built from"
+        f"--port must lead to a circuit with memory map {other.hex()}, as in this version, but the one at "
+        f"{service.url} has {key(SMALL).hex()}: build and load the circuit again (make bitstream, make flash), or use "
+        "the version that it was built with"
     )
     with pytest.raises(OtherCircuit, match=re.escape(message)):
         Board.at(service.url)
 
 
-def test_something_else_than_a_circuit_is_refused(service, monkeypatch):
+def test_a_device_that_is_not_a_circuit_is_refused(service, monkeypatch):
     monkeypatch.setattr(driver, "MAGIC", 5)
-    message = "--port must lead to a circuit of this version, not what is at .*: magic must be 0x5, not 0x5248454f"
+    message = "--port must lead to a circuit of this version, not the one at .*: magic must be 0x5, not 0x5248454f"
     with pytest.raises(OtherCircuit, match=message):
         Board.at(service.url)
 
@@ -220,6 +222,4 @@ def test_a_port_to_serve_on_is_a_number(port, message, capsys):
 def test_a_port_that_is_taken_is_not_served_on(service, capsys):
     taken = service.url.rpartition(":")[2]
     assert main(["serve", "--port", taken]) == 2
-    assert capsys.readouterr().err.startswith(
-        f"error: --port must be a port of this machine that is free, not {taken}: "
-    )
+    assert capsys.readouterr().err.startswith(f"error: --port must be a free port of this machine, not {taken}: ")

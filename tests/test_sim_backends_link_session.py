@@ -69,7 +69,7 @@ def test_a_host_whose_rate_is_two_per_cent_off_is_understood(error, rng):
 def test_a_host_with_another_rate_gets_no_answer(error, rng):
     circuit = serial_circuit(host_error=error)
     line = NoisyLine(circuit, rng, 0)
-    with pytest.raises(NoAnswer, match="have the rate of --baud"):
+    with pytest.raises(NoAnswer, match="that --baud is the rate it was built for"):
         Session(line, lambda identity: key(SMALL), TIMEOUT, clock=line.clock)
     circuit.close()
 
@@ -86,9 +86,9 @@ def test_a_silent_line_is_given_up(rng):
 
     with pytest.raises(
         NoAnswer,
-        match=r"--port must lead to a circuit that answers, but nowhere was silent for 0.06 s "
-        r"\(0 damaged frames came\): it must be loaded \(make flash\) and have the rate "
-        "of --baud",
+        match=r"--port must lead to a circuit that answers, but no answer came from nowhere within 0.06 s, "
+        r"and 0 damaged frames: check that the board is loaded \(make flash\), that --port is its serial port, "
+        "and that --baud is the rate it was built for",
     ):
         Session(Dead(), lambda identity: key(SMALL), timeout=0.01)
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from hw.boards import board as boards
 from hw.boards.board import Board, Circuit
 from hw.boards.result import Build, Result, Timing
-from hw.sizes import SIZES, size_texts, summary
+from hw.sizes import SIZES, format_sizes, summary
 
 
 def timing_report(timing: Timing, board: Board) -> str:
@@ -69,7 +69,7 @@ class Row(NamedTuple):
 Columns = Mapping[str, Callable[[Row], str]]
 
 CIRCUIT: Columns = {
-    size.name: lambda row, name=size.name: size_texts(row.circuit)[name] for size in SIZES.values() if size.column
+    size.name: lambda row, name=size.name: format_sizes(row.circuit)[name] for size in SIZES.values() if size.column
 }
 RESOURCES: Columns = {
     "LUT": lambda row: row.use(0),

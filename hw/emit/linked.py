@@ -1,4 +1,4 @@
-"""The Verilog of the circuit behind its link."""
+"""The Verilog of the circuit with its link."""
 
 from hw.emit.verilog import convert, emit
 from hw.families.registry import get_family
@@ -15,7 +15,7 @@ def emit_link(top: Linked, family: str) -> str:
 
 
 def linked(parameters: Parameters, *, clock_hz: int, baud: int) -> tuple[str, Linked]:
-    """Return the Verilog text with the module `LINKED`, and what it was made from. Raises ValueError as `Linked`."""
+    """Return the Verilog text with the module `LINKED`, and its source. Raises ValueError as `hw.link.top.Linked`."""
     text, core = emit(parameters)
     top = Linked(core, clock_hz=clock_hz, baud=baud)
     return f"{text}\n{emit_link(top, parameters.family)}", top

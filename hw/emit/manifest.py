@@ -1,4 +1,4 @@
-"""The manifest beside the Verilog: everything that a driver, or a reader, has to know about this circuit."""
+"""The manifest beside the Verilog: everything that a driver or a reader has to know about the circuit."""
 
 import hashlib
 
@@ -16,19 +16,19 @@ DESIGN = "rheogate"
 PORTS = {
     "clk": "the one clock, rising edge",
     "rst": "synchronous; memories keep their contents",
-    "request": "1 for every cycle in which address, write and write_data are a request",
-    "write": "1: write_data is to be written; 0: the word is to be read",
+    "request": "1 in each cycle in which address, write and write_data are a request",
+    "write": "1: write write_data; 0: read the word",
     "address": "see address",
     "write_data": "a word, lowest bits first",
     "answer": "1 in the cycle of a request's answer; answers come in order",
     "error": "with an answer: the request was refused and nothing was changed",
-    "read_data": "with an answer: what was read, 0 if refused",
-    "busy": "1 while steps are run",
+    "read_data": "with an answer: the word that was read, 0 if refused",
+    "busy": "1 while a run is under way",
 }
 
 
 def manifest(core: Core, verilog: str, key: str) -> dict:
-    """The manifest of the circuit whose text is ``verilog``; ``key`` tells what it was made from."""
+    """Return the manifest of the circuit with this Verilog text; ``key`` is that of its sources."""
     p = core.parameters
     contents = {
         "design": DESIGN,
@@ -47,15 +47,17 @@ def manifest(core: Core, verilog: str, key: str) -> dict:
 
 
 def parameters(p: Parameters) -> dict:
+    """Return sizes, word lengths and family by name."""
     return {**sizes_of(p), "rows": p.rows, **words_of(p.formats), "family": p.family}
 
 
 def digest(text: str) -> str:
+    """Return the SHA-256 of a text, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def own_digest(contents: dict) -> str:
-    """Return the hash of the manifest without its own hash, as `dump` writes it."""
+    """Return the hash of a manifest without its own hash."""
     return digest(dump({name: value for name, value in contents.items() if name != "sha256"}))
 
 

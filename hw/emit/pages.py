@@ -45,7 +45,7 @@ def header(p: Parameters, about: dict) -> str:
                 name = f"{region['name']}_{word['name']}_{field['name']}"
                 constants += [(f"{name}_low", field["low"]), (f"{name}_bits", field["bits"])]
     constants.append(("region_link", link["region"]))
-    for what, entries, number in (
+    for group, entries, number in (
         ("control", about["registers"], "index"),
         ("link", link["registers"], "index"),
         ("fault", about["faults"], "bit"),
@@ -54,7 +54,7 @@ def header(p: Parameters, about: dict) -> str:
         ("status", link["statuses"], "number"),
         ("identity", link["identity"], "item"),
     ):
-        constants += [(f"{what}_{entry['name']}", entry[number]) for entry in entries]
+        constants += [(f"{group}_{entry['name']}", entry[number]) for entry in entries]
     constants += [(f"head_{field['name']}_low", field["low"]) for field in link["head"]]
     constants.append(("status_busy", link["busy"]))
     lines = [f"#define {_name(name)} {value}" for name, value in constants]
@@ -77,10 +77,10 @@ def header(p: Parameters, about: dict) -> str:
 
 
 def page(p: Parameters, about: dict) -> str:
-    """Return the same as tables in Markdown."""
+    """Return the same contents as Markdown tables."""
     link = about["link"]
     sizes = ", ".join(f"{count} {name}" for name, count in _sizes(p))
-    parts = [f"# Memory map and link\n\nOf a circuit with {sizes}; key `{key(p).hex()}`."]
+    parts = [f"# Memory map and link\n\nFor a circuit with {sizes}; key `{key(p).hex()}`."]
     parts += [_table("Address", about["address"], ("name", "low", "bits"))]
     for region in about["regions"]:
         rows = [
@@ -89,7 +89,7 @@ def page(p: Parameters, about: dict) -> str:
         ]
         parts.append(
             _table(
-                f"Region {region['number']}, {region['name']}: {region['depth']} places, {region['lanes']} lanes",
+                f"Region {region['number']}, {region['name']}: depth {region['depth']}, {region['lanes']} lanes",
                 rows,
                 ("word", "name", "fields"),
             )
@@ -102,11 +102,11 @@ def page(p: Parameters, about: dict) -> str:
         ("Segments", link["kinds"], ("number", "name", "meaning")),
         ("A segment's head", link["head"], ("name", "low", "bits")),
         (
-            f"Statuses, lower four bits; {link['busy']:#x}: steps are run",
+            f"Statuses, lower four bits; {link['busy']:#x}: a run is under way",
             link["statuses"],
             ("number", "name", "meaning"),
         ),
-        ("Identity: the items after the one that is given back", link["identity"], ("item", "name", "meaning")),
+        ("Identity: the items after the number that is given back", link["identity"], ("item", "name", "meaning")),
     ):
         parts.append(_table(title, entries, columns))
     return "\n\n".join(parts) + "\n"

@@ -1,4 +1,4 @@
-"""The CRC of a frame, with the key in front of it."""
+"""The CRC of a frame, over the key and its bytes."""
 
 from amaranth.hdl import Array, Module, Mux, Signal
 from amaranth.lib import wiring
@@ -6,9 +6,15 @@ from amaranth.lib.wiring import In, Out
 
 from hw.link.frame import ANSWER, CRC, GREETING, KEY_BYTES
 
+BYTE = len(("taken", "summed"))
+"""Cycles from a byte to the next."""
+
+FIRST_BYTE = KEY_BYTES + BYTE
+"""Cycles from a frame's first byte to the next; the key is summed before it."""
+
 
 class FrameCrc(wiring.Component):
-    """Takes a frame's bytes from the type on; a greeting's without the key.
+    """Compute the CRC of a frame's bytes from the type on, after the key. A greeting has no key.
 
     Parameters
     ----------
@@ -20,10 +26,10 @@ class FrameCrc(wiring.Component):
     start : In(1)
         The next byte is a frame's first.
     valid : In(1), data : In(8), ready : Out(1)
-        A byte is taken in a cycle in which both are 1, and keeps the next waiting for a cycle; a frame's first for
-        `KEY_BYTES` more.
+        A byte is taken in a cycle in which both are 1; the next one `BYTE` cycles later, after a frame's first byte
+        `FIRST_BYTE` cycles.
     crc : Out(32), match : Out(1)
-        Of the bytes so far, when ``ready``; whether the last four of them are the CRC of those before.
+        While ``ready``: the CRC of the bytes so far; their last four are the CRC of those before.
     """
 
     def __init__(self, key: bytes):
@@ -45,11 +51,10 @@ class FrameCrc(wiring.Component):
         m = Module()
         m.submodules.crc = crc = CRC(data_width=8).create()
         first = Signal(init=1)
-        begins = Signal()
+        begins = Signal()  # the waiting byte is a frame's first
         byte = Signal(8)
         waits = Signal()
-        # the key goes before the byte that waits
-        keyed = Signal()
+        keyed = Signal()  # the key goes before the waiting byte
         number = Signal(range(KEY_BYTES))
         m.d.comb += [
             self.ready.eq(~waits),

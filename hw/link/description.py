@@ -1,4 +1,4 @@
-"""The description of a circuit for its drivers: one for manifest, C header, page and the link's key."""
+"""The description of a circuit for its drivers, for the manifest, the C header, the page and the link's key."""
 
 import hashlib
 import json
@@ -17,7 +17,7 @@ from hw.parameters import Parameters
 
 
 def description(p: Parameters) -> dict:
-    """The map of the memory, registers, faults, formats, and what is said over the link; in plain types."""
+    """Return the memory map, registers, faults, formats and the protocol of the link, as plain types for JSON."""
     memory = Map(p)
     return {
         "map_version": VERSION,
@@ -43,11 +43,12 @@ def description(p: Parameters) -> dict:
 
 
 def key(p: Parameters) -> bytes:
-    """Return the bytes that the CRC of a frame begins with: another description has another key."""
+    """Return the bytes that go before a frame in its CRC; a circuit with another description has another key."""
     return hashlib.sha256(dump(description(p)).encode()).digest()[:KEY_BYTES]
 
 
 def dump(contents: dict) -> str:
+    """Return contents as JSON."""
     return json.dumps(contents, indent=1) + "\n"
 
 

@@ -1,9 +1,8 @@
-"""The frames that go over the line, ``00 | COBS(header, payload, CRC-32) | 00``.
+"""Frames on the line: ``00 | COBS(header, payload, CRC-32) | 00``.
 
 The header is type, seq, status, bytes of an item (0 in commands) and the payload's length, two bytes, lowest first. The
-CRC is that of Ethernet and zlib over the key, which is not sent, header and payload: a circuit takes no frame of a host
-that was made for another memory map, and the other way round. A greeting and its answer are without the key, so that
-the two can find out.
+CRC, that of Ethernet and zlib, is over the key, header and payload; the key is not sent. So circuit and host drop each
+other's frames if their memory maps differ. A greeting and its answer have no key: they tell a host about the circuit.
 """
 
 import struct
@@ -18,17 +17,17 @@ PAYLOAD_MOST = 512
 CRC_BYTES = 4
 KEY_BYTES = 8
 LEAST, MOST = HEADER.size + CRC_BYTES, HEADER.size + PAYLOAD_MOST + CRC_BYTES
-"""Bytes of a frame without zeros around it and before COBS."""
+"""Bytes of a frame before COBS, without its zeros."""
 
 CRC = crc.catalog.CRC32_ISO_HDLC
 GREETING = 0x01
-"""The type that goes without the key, and with the top bit its answer."""
+"""The type of a greeting."""
 ANSWER = 0x80
-"""Set in the type of every frame from the device."""
+"""Bit that is set in the type of every answer."""
 
 
 class FrameError(ValueError):
-    """Bytes that are no frame; ``kind`` is the counter that the device would count it in."""
+    """Bytes aren't a frame; ``kind`` names the counter of the circuit for such errors."""
 
     def __init__(self, kind: str):
         super().__init__(kind)
@@ -44,7 +43,7 @@ class Frame:
     item_bytes: int = 0
 
     def packed(self, key: bytes) -> bytes:
-        """As it goes over the line. Raises ValueError for a payload that is too long."""
+        """Return the bytes on the line. Raises ValueError if the payload is too long."""
         if len(self.payload) > PAYLOAD_MOST:
             raise ValueError(f"payload must be at most {PAYLOAD_MOST} bytes, not {len(self.payload)}")
         body = HEADER.pack(self.type, self.seq, self.status, self.item_bytes, len(self.payload)) + self.payload
@@ -52,7 +51,7 @@ class Frame:
 
 
 def unpacked(coded: bytes, key: bytes) -> Frame:
-    """The frame of what stood between two zeros. Raises `FrameError`."""
+    """Return the frame in the bytes between two zeros. Raises `FrameError`."""
     try:
         body = cobs.decode(coded)
     except cobs.DecodeError:

@@ -1,4 +1,4 @@
-"""The identity of a circuit: what it answers a greeting, in items."""
+"""The identity of a circuit: the items of its answer to a greeting."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ IDENTITY_TEXT = {
     "protocol": "version of the link's protocol",
     "map_version": "version of the memory map",
     "key_low": f"first {PART} bytes of the hash of the memory map, lowest first",
-    "key_high": f"its other {PART}",
+    "key_high": f"the other {PART} bytes",
     **CIRCUIT,
     "clock_hz": "clock cycles a second",
     "bit_cycles": "clock cycles of a bit on the line",
@@ -57,7 +57,7 @@ class Identity:
 
     @classmethod
     def read(cls, items: list[int]) -> Identity:
-        """The identity in these items. Raises ValueError if there are more or fewer, or no key among them."""
+        """Return the identity of its items. Raises ValueError if their number is wrong or half a key is too long."""
         if len(items) != len(IDENTITY_TEXT):
             raise ValueError(f"items must be {len(IDENTITY_TEXT)}, not {len(items)}")
         told = dict(zip(IDENTITY_TEXT, items, strict=True))
@@ -74,6 +74,6 @@ class Identity:
         return [*told, self.clock_hz, self.bit_cycles]
 
     def parameters(self) -> Parameters:
-        """The circuit's parameters but for its family. Raises ValueError if there can't be such a circuit."""
+        """Return the circuit's parameters, of the generic family. Raises ValueError if no circuit can have them."""
         sizes, words = ({name: self.circuit[name] for name in names} for names in (SIZES, WORDS))
         return Parameters(**sizes, formats=Formats(**words))

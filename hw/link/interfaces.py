@@ -3,7 +3,7 @@
 from amaranth.lib.wiring import In, Out, Signature
 
 EVENTS = "good_frames", "line_errors", "breaks", "cobs_errors", "length_errors", "crc_errors", "overruns"
-"""The fates of the bytes between two zeros; and a break, which is none of them."""
+"""The fates of a frame, and ``breaks``, which counts breaks on the line."""
 
 
 class ReceivedBytes(Signature):
@@ -24,8 +24,16 @@ class ByteStream(Signature):
         super().__init__({"valid": Out(1), "data": Out(8), "ready": In(1)})
 
 
+class ItemStream(Signature):
+    """Items (`hw.link.items`) with a handshake: one is taken in each cycle in which ``valid`` and ``ready`` are both
+    1."""
+
+    def __init__(self, bits: int):
+        super().__init__({"valid": Out(1), "item": Out(bits), "ready": In(1)})
+
+
 class FrameEvents(Signature):
-    """One of `EVENTS` happens, for one cycle."""
+    """A strobe for each of `EVENTS`, high for one cycle when it happens."""
 
     def __init__(self):
         super().__init__({event: Out(1) for event in EVENTS})

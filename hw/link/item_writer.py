@@ -4,12 +4,13 @@ from amaranth.hdl import Cat, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from hw.link.interfaces import ItemStream
 from hw.link.items import Items
 from hw.link.send import ANSWER_MOST
 
 
 class ItemWriter(wiring.Component):
-    """Writes items one after another, lowest byte first: one in as many cycles as it has bytes, and one more.
+    """Write items one after another, lowest byte first. An item takes a cycle a byte, and one more to be taken.
 
     Parameters
     ----------
@@ -18,11 +19,11 @@ class ItemWriter(wiring.Component):
     Members
     -------
     begin : In(1), at : In
-        The next item goes there.
-    valid : In(1), item : In, ready : Out(1)
-        An item is taken in a cycle in which both are 1. While ``ready``, all that were taken have been written.
-    write : Out(1), place : Out, data : Out(8)
-        A byte of the answer. While ``ready``, ``place`` is the one after the last item.
+        The next item goes to the byte index ``at``.
+    stream : In(ItemStream)
+        Items. While ``ready``, all that were taken have been written.
+    write : Out(1), index : Out, data : Out(8)
+        A byte of the answer. While ``stream.ready``, ``index`` is the one after the last item.
     """
 
     def __init__(self, items: Items):
@@ -31,24 +32,22 @@ class ItemWriter(wiring.Component):
             {
                 "begin": In(1),
                 "at": In(range(ANSWER_MOST + 1)),
-                "valid": In(1),
-                "item": In(8 * items.bytes),
-                "ready": Out(1),
+                "stream": In(ItemStream(8 * items.bytes)),
                 "write": Out(1),
-                "place": Out(range(ANSWER_MOST + 1)),
+                "index": Out(range(ANSWER_MOST + 1)),
                 "data": Out(8),
             }
         )
 
     def elaborate(self, platform):
         m = Module()
-        rest = Signal.like(self.item)
+        rest = Signal.like(self.stream.item)
         left = Signal(range(self._bytes + 1))
-        m.d.comb += [self.ready.eq(left == 0), self.write.eq(left != 0), self.data.eq(rest[:8])]
-        with m.If(self.ready & self.valid):
-            m.d.sync += [rest.eq(self.item), left.eq(self._bytes)]
-        with m.If(~self.ready):
-            m.d.sync += [rest.eq(Cat(rest[8:])), left.eq(left - 1), self.place.eq(self.place + 1)]
+        m.d.comb += [self.stream.ready.eq(left == 0), self.write.eq(left != 0), self.data.eq(rest[:8])]
+        with m.If(self.stream.ready & self.stream.valid):
+            m.d.sync += [rest.eq(self.stream.item), left.eq(self._bytes)]
+        with m.If(~self.stream.ready):
+            m.d.sync += [rest.eq(Cat(rest[8:])), left.eq(left - 1), self.index.eq(self.index + 1)]
         with m.If(self.begin):
-            m.d.sync += self.place.eq(self.at)
+            m.d.sync += self.index.eq(self.at)
         return m

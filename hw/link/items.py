@@ -1,4 +1,4 @@
-"""The items of payloads: words, all of the same number of bytes, lowest byte first."""
+"""Items, the words of payloads. All have the same number of bytes, lowest byte first."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ assert 8 * LEAST == HEAD.width
 
 @dataclass(frozen=True)
 class Items:
-    """Items of so many bytes.
+    """The items of a link: their length, and what a frame holds of them.
 
     Raises
     ------
@@ -36,12 +36,12 @@ class Items:
 
     @property
     def command_most(self) -> int:
-        """Items that a command's payload has room for."""
+        """Most items in a command's payload."""
         return PAYLOAD_MOST // self.bytes
 
     @property
     def answer_most(self) -> int:
-        """Items that an answer has room for after the faults."""
+        """Most items in an answer after the faults."""
         return (ANSWER_MOST - HEADER.size) // self.bytes - 1
 
     def pack(self, word: int) -> bytes:

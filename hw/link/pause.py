@@ -1,16 +1,38 @@
-"""A run that pauses with its step and goes on afterwards, and one that ends because the host is silent."""
+"""Pause a run between two steps and let it go on afterwards, or end one because the host is silent."""
 
 from amaranth.hdl import Module, Mux, Signal, signed
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from hw.link.port import LATENCY
+from hw.link.states import check_states
 from hw.machine.interfaces import HostAccess
 from hw.map.control import Control
 from hw.map.memory_map import Region, join
 
+PAUSE = "stop", "stopping", "stopped", "counting", "left", "done"
+"""States of a pause: write STOP, wait for its answer and for the run's end, read STEPS_DONE."""
+RESUME = "go", "asked", "done"
+"""States in which the rest of a run begins: write RUN."""
+HALT = "halt", "asked", "done"
+IDLE = ("idle",)
+
+_ACCESS = 1 + LATENCY
+"""Cycles of an access: its register, and the answer's way."""
+
+
+def _cycles(path: tuple[str, ...]) -> int:
+    return sum(_ACCESS if state in ("stopping", "counting", "asked") else 1 for state in path)
+
+
+PAUSE_CYCLES = _cycles(PAUSE)
+"""Cycles from ``pause`` to ``done``, if the run is over when STOP is answered; else those of its step come on top."""
+RESUME_CYCLES = _cycles(RESUME)
+"""Cycles from ``resume`` to ``done``."""
+
 
 class Pause(wiring.Component):
-    """Stops the run that goes on, and lets what is left of it run later: on the host port, while nobody else uses it.
+    """Stop the run that is under way, and let the rest of it run later. Uses the host port while nobody else does.
 
     Parameters
     ----------
@@ -20,10 +42,9 @@ class Pause(wiring.Component):
     Members
     -------
     pause, resume, halt : In(1)
-        Begin: to stop the run with its step; to let what is left of it go on; to stop it for good. One at a time, not
-        again before ``done``.
+        Stop the run after its step; let the rest of it run; stop it for good. One at a time, not again before ``done``.
     done : Out(1)
-        What was begun is through.
+        The request is done.
     noted : In(1), steps : In(32)
         The host began a run of so many steps, or ended it (0): nothing is left of an earlier one.
     busy : In(1)
@@ -31,8 +52,8 @@ class Pause(wiring.Component):
     """
 
     def __init__(self, state: int):
-        begin = dict.fromkeys(("pause", "resume", "halt", "noted", "busy"), In(1))
-        super().__init__({**begin, "steps": In(32), "done": Out(1), "port": Out(HostAccess(state))})
+        strobes = {name: In(1) for name in ("pause", "resume", "halt", "noted", "busy")}
+        super().__init__({**strobes, "steps": In(32), "done": Out(1), "port": Out(HostAccess(state))})
 
     def elaborate(self, platform):
         m = Module()
@@ -40,21 +61,10 @@ class Pause(wiring.Component):
         left = Signal.like(self.steps)
         rest = Signal(signed(len(run) + 1))
         some = Signal()
-        m.d.sync += some.eq(left != 0)
+        m.d.sync += [some.eq(left != 0), self.port.request.eq(0)]
         with m.If(self.noted):
             m.d.sync += [run.eq(self.steps), left.eq(0)]
-
-        def ask(register, following, write=None):
-            """An access to a control register; the next state waits for its answer."""
-            m.d.sync += [self.port.request.eq(1), self.port.address.eq(join(Region.CONTROL, 0, register, 0))]
-            m.d.sync += self.port.write.eq(write is not None)
-            if write is not None:
-                m.d.sync += self.port.write_data.eq(write)
-            m.next = following
-
-        m.d.sync += self.port.request.eq(0)
-
-        with m.FSM():
+        with m.FSM() as machine:
             with m.State("idle"):
                 with m.If(self.pause):
                     m.next = "stop"
@@ -65,30 +75,39 @@ class Pause(wiring.Component):
                     with m.If(some):
                         m.next = "go"
             with m.State("stop"):
-                ask(Control.STOP, "stopping", write=1)
-            with m.State("halt"):
-                m.d.sync += left.eq(0)
-                ask(Control.STOP, "asked", write=1)
-            with m.State("go"):
-                m.d.sync += [run.eq(left), left.eq(0)]
-                ask(Control.RUN, "asked", write=left)
+                self._access(m, Control.STOP, "stopping", write=1)
             with m.State("stopping"):
                 with m.If(self.port.answer):
                     m.next = "stopped"
             with m.State("stopped"):
                 with m.If(~self.busy):
-                    ask(Control.STEPS_DONE, "counted")
-            with m.State("counted"):
+                    self._access(m, Control.STEPS_DONE, "counting")
+            with m.State("counting"):
                 m.d.sync += rest.eq(run - self.port.read_data[: len(run)])
                 with m.If(self.port.answer):
-                    m.next = "rest"
-            with m.State("rest"):
+                    m.next = "left"
+            with m.State("left"):
                 m.d.sync += left.eq(Mux(rest < 0, 0, rest))
                 m.next = "done"
+            with m.State("halt"):
+                m.d.sync += left.eq(0)
+                self._access(m, Control.STOP, "asked", write=1)
+            with m.State("go"):
+                m.d.sync += [run.eq(left), left.eq(0)]
+                self._access(m, Control.RUN, "asked", write=left)
             with m.State("asked"):
                 with m.If(self.port.answer):
                     m.next = "done"
             with m.State("done"):
                 m.d.comb += self.done.eq(1)
                 m.next = "idle"
+        check_states(machine.encoding, IDLE, PAUSE, RESUME, HALT)
         return m
+
+    def _access(self, m: Module, register: Control, following: str, write=None):
+        """Access a control register; the following state waits for the answer."""
+        m.d.sync += [self.port.request.eq(1), self.port.address.eq(join(Region.CONTROL, 0, register, 0))]
+        m.d.sync += self.port.write.eq(write is not None)
+        if write is not None:
+            m.d.sync += self.port.write_data.eq(write)
+        m.next = following

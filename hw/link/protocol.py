@@ -1,8 +1,8 @@
 """The protocol of the link: one table for circuit, driver and documentation.
 
 A payload is a list of items (`hw.link.items`), of as many bytes as a word of the circuit needs; the header of every
-answer says how many. A command's payload is segments: a head, and the words of a write. An answer's payload is the
-faults, then a word for each that was read and for each check.
+answer says how many. A command's payload is a list of segments; a segment is a head, and the words to write. An
+answer's payload is the faults, then each word that was read and the CRC of each check.
 
 A greeting comes before the host knows the size of an item. Its payload is `GREETING_BYTES`, a number in the lowest of
 them and then zeros.
@@ -21,7 +21,7 @@ GREETING_BYTES = 8
 """Bytes of a greeting's payload, and the most that an item may have."""
 
 WINDOW = ANSWERS
-"""Commands that may be under way."""
+"""Commands that may be under way at once."""
 
 
 class Operation(IntEnum):
@@ -31,9 +31,9 @@ class Operation(IntEnum):
 
 
 OPERATION_TEXT = {
-    Operation.HELLO: "a number, which is given back, and the identity: begins a session, the next seq is one more",
-    Operation.ACCESS: "segments; while steps are run, only what may be read and written then",
-    Operation.EXCHANGE: "segments, between two steps: a run pauses, and goes on afterwards to the same bits",
+    Operation.HELLO: "takes a number and gives it back, with the identity: begins a session; the next seq is one more",
+    Operation.ACCESS: "does segments; while steps run, only words that may be accessed then",
+    Operation.EXCHANGE: "does segments between two steps: a run pauses, and goes on afterwards to the same bits",
 }
 
 
@@ -47,7 +47,7 @@ class Kind(IntEnum):
 
 KIND_TEXT = {
     Kind.READ: "gives the words",
-    Kind.WRITE: "takes the words behind it, gives nothing",
+    Kind.WRITE: "takes the words after it, gives nothing",
     Kind.CHECK: "gives the CRC-32 of the words' items",
 }
 
@@ -60,14 +60,13 @@ HEAD = Record(
         "count": unsigned(8, 0),
     }
 )
-"""A segment's head, ``across``: words of one place behind one another,
-instead of places of one word."""
+"""A segment's head. From a word to the next the index goes up, or, if ``across``, the number of the word."""
 
 COUNT_MOST = HEAD["count"].raw_max
 
 
 class Status(IntEnum):
-    """The status of an answer: the lower half of its status byte."""
+    """The status of an answer, in the low four bits of its status byte."""
 
     DONE = 0
     REFUSED = 1
@@ -85,4 +84,4 @@ STATUS_TEXT = {
 }
 
 BUSY = 0x10
-"""In the status byte: steps are run."""
+"""Bit of the status byte: a run is under way."""

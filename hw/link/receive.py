@@ -1,4 +1,4 @@
-"""From bytes to frames: stored whole, and shown only when all is right."""
+"""Receive frames: store their payloads whole, and offer those that came without damage."""
 
 from amaranth.hdl import Array, Cat, Module, Signal
 from amaranth.lib import wiring
@@ -11,19 +11,22 @@ from hw.link.interfaces import FrameEvents, ReceivedBytes
 from hw.machine.interfaces import named
 
 SLOTS = 4
-"""Frames there is room for: one that comes, those that wait, one that is worked on."""
+"""Frames that there is room for: one being received, those that wait, one being worked on."""
 
 BYTE_CYCLES = KEY_BYTES + 6
-"""Cycles from a byte to the next, at least: the key has to be gone through, and each comparison has its own cycle."""
+"""Fewest cycles from a byte to the next: the CRC first takes the key, and each comparison has its own cycle."""
+
+ARRIVAL = len(("byte", "event", "waiting", "frame"))
+"""Cycles from the byte that ends a frame to ``frame``: the registers between them."""
 
 
 class FrameReceiver(wiring.Component):
-    """Takes a frame's bytes as they come, and gives whole frames in their order.
+    """Take a frame's bytes as they come, and offer whole frames in order.
 
-    A zero byte or a break ends a frame; nothing between two of them is no frame and no error. A frame is dropped, and
-    counted as the first of these that applies: a byte lacked its stop bit or a break came (`line_errors`), it isn't
-    COBS (`cobs_errors`), is not as long as it says (`length_errors`), has a wrong CRC (`crc_errors`), there is no room
-    for it (`overruns`).
+    A zero byte or a break ends a frame; two of them in a row are neither a frame nor an error. A frame is dropped, and
+    counted as the first of these that applies: a byte lacked its stop bit or a break came (``line_errors``), it isn't
+    COBS (``cobs_errors``), is not as long as it says (``length_errors``), has a wrong CRC (``crc_errors``), there is no
+    room for it (``overruns``).
 
     Parameters
     ----------
@@ -32,13 +35,13 @@ class FrameReceiver(wiring.Component):
     Members
     -------
     received : In(ReceivedBytes)
-        A byte every `BYTE_CYCLES` at the most.
+        At most a byte every `BYTE_CYCLES`.
     frame : Out(1), type : Out(8), seq : Out(8), length : Out
-        There is a frame: its header.
-    place : In, byte : Out(8)
-        A byte of its payload, `hw.blocks.memory.READ_LATENCY` cycles after its place.
+        A frame waits, and its header.
+    index : In, byte : Out(8)
+        A byte of its payload, `hw.blocks.memory.READ_LATENCY` cycles after its index.
     take : In(1)
-        The frame has been worked on. Only while ``frame``; the next comes two cycles later.
+        The frame is done. Only while ``frame``; the next one is offered two cycles later.
     events : Out(FrameEvents)
         In the second cycle after the byte or the break.
     """
@@ -52,7 +55,7 @@ class FrameReceiver(wiring.Component):
                 "type": Out(8),
                 "seq": Out(8),
                 "length": Out(range(PAYLOAD_MOST + 1)),
-                "place": In(range(PAYLOAD_MOST)),
+                "index": In(range(PAYLOAD_MOST)),
                 "byte": Out(8),
                 "take": In(1),
                 "events": Out(FrameEvents()),
@@ -74,7 +77,7 @@ class FrameReceiver(wiring.Component):
             ends.eq(self.received.valid & (self.received.data == 0) | self.received.broken),
         ]
         decoded, byte, open_block = self._decode(m, valid, data, ends)
-        count = Signal(range(MOST + 2))  # of decoded bytes; one more than there may be stands for all beyond
+        count = Signal(range(MOST + 2))  # decoded bytes; saturates one above the longest frame
         with m.If(decoded & (count <= MOST)):
             m.d.sync += count.eq(count + 1)
         header = self._header(m, decoded, byte, count)
@@ -116,11 +119,10 @@ class FrameReceiver(wiring.Component):
         return m
 
     def _decode(self, m, valid, data, ends):
-        """(there is a byte behind COBS, it, more bytes of its block have to come) a cycle after the line's byte."""
-        # Bytes that the block still has, whether no zero is behind it, whether there is one
-        left = Signal(8)
-        full = Signal()
-        begun = Signal()
+        """Return (a byte is decoded, the byte, its COBS block goes on), a cycle after the line's byte."""
+        left = Signal(8)  # bytes that are left of the block
+        full = Signal()  # no zero follows the block
+        begun = Signal()  # this isn't the frame's first block
         decoded = Signal()
         byte = Signal(8)
         m.d.sync += decoded.eq(0)
@@ -147,24 +149,24 @@ class FrameReceiver(wiring.Component):
         return crc.match
 
     def _store(self, m, decoded, byte, count, header):
-        """Payloads one behind the other in a memory, headers in registers; whether there is room for a byte."""
+        """Keep payloads in a memory and headers in registers. Return whether there is room for a byte."""
         m.submodules.payloads = payloads = BlockRam(width=8, depth=SLOTS * PAYLOAD_MOST)
         coming = Signal(range(SLOTS))
         worked = Signal(range(SLOTS))
         waiting = Signal(range(SLOTS + 1))
         room = Signal()
-        place = Signal(range(MOST + 2))
+        index = Signal(range(MOST + 2))
         kept = [Signal(24 + 8, name=f"kept_{slot}") for slot in range(SLOTS)]
         first = Array(kept)[worked]
         m.d.comb += [
-            place.eq(count - HEADER.size),
-            payloads.address.eq(Cat(self.place, worked)),
+            index.eq(count - HEADER.size),
+            payloads.address.eq(Cat(self.index, worked)),
             self.byte.eq(payloads.data),
         ]
         m.d.sync += [
             room.eq(waiting != SLOTS),
-            payloads.write.eq(decoded & (count >= HEADER.size) & (place < PAYLOAD_MOST) & room),
-            payloads.write_address.eq(Cat(place[: len(self.place)], coming)),
+            payloads.write.eq(decoded & (count >= HEADER.size) & (index < PAYLOAD_MOST) & room),
+            payloads.write_address.eq(Cat(index[: len(self.index)], coming)),
             payloads.write_data.eq(byte),
         ]
         with m.If(self.events.good_frames):

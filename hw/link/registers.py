@@ -1,4 +1,4 @@
-"""The link's own registers: what became of the bytes that came, and how long the host may be silent."""
+"""The link's own registers: counters of frames and commands, and the watchdog."""
 
 from enum import IntEnum
 
@@ -7,11 +7,11 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from hw.link.interfaces import EVENTS, FrameEvents
-from hw.machine.interfaces import named
+from hw.machine.interfaces import HostAccess, named
 from hw.map.memory_map import ADDRESS, Region
 
 LINK = len(Region)
-"""Number of their region, behind those of the circuit."""
+"""Number of their region, after those of the circuit."""
 
 BITS = 32
 
@@ -34,15 +34,15 @@ class Link(IntEnum):
 
 LINK_TEXT = {
     Link.WATCHDOG: "clock cycles without a good frame after which a run ends with its step; 0: never",
-    Link.HALTS: "runs that ended so",
-    Link.GOOD_FRAMES: "frames that were all right",
+    Link.HALTS: "runs that the watchdog ended",
+    Link.GOOD_FRAMES: "frames without errors",
     Link.LINE_ERRORS: "frames dropped: a byte had no stop bit, or a break came",
     Link.BREAKS: "breaks",
     Link.COBS_ERRORS: "frames dropped: not COBS",
     Link.LENGTH_ERRORS: "frames dropped: not as long as they said",
     Link.CRC_ERRORS: "frames dropped: wrong CRC",
     Link.OVERRUNS: "frames dropped: no room",
-    Link.DUPLICATES: "commands that had been done before, and were answered again",
+    Link.DUPLICATES: "commands that had been done before and were answered again",
     Link.GAPS: "commands dropped, because one before them is missing or there is no session",
 }
 
@@ -51,7 +51,7 @@ assert [counter.name.lower() for counter in COUNTERS[1:-2]] == list(EVENTS)
 
 
 class LinkRegisters(wiring.Component):
-    """Answers a request two cycles later. Counters go round at 2^32 and are cleared by any write.
+    """Answer each request two cycles later. Counters wrap at 2^32; any write clears them.
 
     Parameters
     ----------
@@ -60,28 +60,21 @@ class LinkRegisters(wiring.Component):
 
     Members
     -------
-    request, write : In(1), index : In, data : In
-    answer, error : Out(1), read_data : Out
-        An error is no such register, or more than `BITS` bits for it: nothing is changed.
+    port : In(HostAccess)
+        An error means that there is no such register, or that the word has more than `BITS` bits; nothing is changed.
     frames : In(FrameEvents), duplicates : In(1), gaps : In(1)
-        What is counted happens in this cycle.
+        Events to count.
     halted : In(1)
         The run was ended.
     busy : In(1)
     halt : Out(1)
-        A run goes on, and the host has been silent for too long.
+        A run is under way, and the host has been silent for too long.
     """
 
     def __init__(self, state: int):
         super().__init__(
             {
-                "request": In(1),
-                "write": In(1),
-                "index": In(ADDRESS["index"].width),
-                "data": In(state),
-                "answer": Out(1),
-                "error": Out(1),
-                "read_data": Out(state),
+                "port": In(HostAccess(state)),
                 "frames": In(FrameEvents()),
                 "duplicates": In(1),
                 "gaps": In(1),
@@ -93,7 +86,8 @@ class LinkRegisters(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        lawful = (self.index < len(Link)) & ~(self.write & self.data[BITS:].any())
+        port, accessed = self.port, ADDRESS.field("index", self.port.address)
+        value_ok = (accessed < len(Link)) & ~(port.write & port.write_data[BITS:].any())
         registers = [Signal(BITS, name=register.name.lower()) for register in Link]
         request = Signal()
         error = Signal()
@@ -101,29 +95,29 @@ class LinkRegisters(wiring.Component):
         data = Signal(BITS)
         writes = Signal(len(Link))
         m.d.sync += [
-            request.eq(self.request),
-            error.eq(self.request & ~lawful),
-            index.eq(self.index),
-            data.eq(self.data),
-            *(writes[register].eq(self.request & self.write & lawful & (self.index == register)) for register in Link),
-            self.answer.eq(request),
-            self.error.eq(error),
-            self.read_data.eq(Mux(error, 0, Array(registers)[index])),
+            request.eq(port.request),
+            error.eq(port.request & ~value_ok),
+            index.eq(accessed),
+            data.eq(port.write_data),
+            *(writes[number].eq(port.request & port.write & value_ok & (accessed == number)) for number in Link),
+            port.answer.eq(request),
+            port.error.eq(error),
+            port.read_data.eq(Mux(error, 0, Array(registers)[index])),
         ]
         most = registers[Link.WATCHDOG]
         with m.If(writes[Link.WATCHDOG]):
             m.d.sync += most.eq(data)
-        happens = {"halts": self.halted, "duplicates": self.duplicates, "gaps": self.gaps, **named(self.frames)}
+        events = {"halts": self.halted, "duplicates": self.duplicates, "gaps": self.gaps, **named(self.frames)}
         for counter in COUNTERS:
             count = registers[counter]
-            m.d.sync += count.eq(Mux(writes[counter], 0, count + happens[counter.name.lower()]))
+            m.d.sync += count.eq(Mux(writes[counter], 0, count + events[counter.name.lower()]))
         silence = Signal(BITS)
         over = Signal()
         ended = Signal()
         m.d.sync += [silence.eq(silence + 1), over.eq((silence >= most) & (most != 0))]
         with m.If(self.frames.good_frames | writes[Link.WATCHDOG] | ~self.busy):
             m.d.sync += [silence.eq(0), over.eq(0)]
-        with m.If(self.halted | ~self.busy):  # once a run: it takes until its step is over
+        with m.If(self.halted | ~self.busy):  # only once: the run goes on until its step is over
             m.d.sync += ended.eq(self.busy)
         m.d.comb += self.halt.eq(over & self.busy & ~ended)
         return m

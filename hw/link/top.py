@@ -1,4 +1,4 @@
-"""The circuit behind its link: two wires are all that leads to it."""
+"""The circuit with its link: a host reaches it over two wires."""
 
 from amaranth.hdl import Cat, Module, ResetSignal, Signal
 from amaranth.lib import wiring
@@ -16,12 +16,12 @@ DEVICE = "rheogate_device"
 
 
 class Linked(wiring.Component):
-    """A circuit, the device that does what comes over the link, and the line.
+    """A circuit, the device that answers a host's commands, and the serial line.
 
     Parameters
     ----------
     core : Core
-        Placed as an instance of its own Verilog module, as the device is.
+        It becomes an instance of its own Verilog module, and so does the device.
     clock_hz : int
     baud : int
 
@@ -30,7 +30,7 @@ class Linked(wiring.Component):
     rx : In(1), tx : Out(1)
         The line, 1 when idle; ``rx`` is asynchronous.
     busy : Out(1)
-        Steps are run.
+        A run is under way.
 
     Raises
     ------
@@ -45,12 +45,12 @@ class Linked(wiring.Component):
         super().__init__({"rx": In(1), "tx": Out(1, init=1), "busy": Out(1)})
 
     def device(self) -> Device:
-        """Return the device that is placed, for its own module."""
+        """Return the device, for its own module."""
         return Device(key=self.key, identity=self.identity.items, state=self._core.parameters.formats.state)
 
     def elaborate(self, platform):
         m, state = Module(), self._core.parameters.formats.state
-        # A reset for each of them, from registers near by: much hangs on it, and they are far from one another
+        # A reset register for each of the two: they are far from one another, and the reset has a large fan-out
         core_reset, device_reset = near = [
             Signal(name=f"{name}_reset", init=1, reset_less=True) for name in ("core", "device")
         ]

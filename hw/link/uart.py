@@ -9,13 +9,13 @@ from hw.link.interfaces import ByteStream, ReceivedBytes
 
 BAUD_LEAST, BAUD_MOST = 115_200, 3_000_000
 LEAST_CYCLES = 8
-"""Cycles a bit needs: its three votes have to be taken near its middle."""
+"""Fewest cycles of a bit: its three samples are taken near its middle."""
 MOST_ERROR = 0.015
-"""By how much the rate may miss the one asked for. A receiver stands 2 %."""
+"""Largest relative error of the achieved rate. A receiver tolerates 2 %."""
 
 
 def cycles_per_bit(clock_hz: float, baud: int) -> int:
-    """Clock cycles of a bit.
+    """Return the clock cycles of a bit.
 
     Raises
     ------
@@ -38,25 +38,25 @@ def cycles_per_bit(clock_hz: float, baud: int) -> int:
 
 
 def achieved(clock_hz: float, cycles: int) -> float:
-    """Bits a second."""
+    """Return the achieved rate in bits a second."""
     return clock_hz / cycles
 
 
 class Receiver(wiring.Component):
-    """Bytes from the line. A bit is what two of three samples around its middle say; a start bit that isn't one is
-    taken for noise and ignored.
+    """Receive bytes from the line. A bit is the majority of three samples around its middle; a start bit that reads as
+    1 is noise, and ignored.
 
     Parameters
     ----------
     cycles : int
-        Of a bit, at least `LEAST_CYCLES`.
+        Cycles of a bit, at least `LEAST_CYCLES`.
 
     Members
     -------
     rx : In(1)
         The line, 1 when idle; asynchronous.
     received : Out(ReceivedBytes)
-        After an error nothing is taken for a start bit until the line is idle again.
+        After an error the next start bit is awaited only when the line has been idle again.
     """
 
     def __init__(self, cycles: int):
@@ -71,22 +71,22 @@ class Receiver(wiring.Component):
         m.submodules += FFSynchronizer(self.rx, line, init=1)
         middle, apart = self._cycles // 2, max(1, self._cycles // 8)
         votes = middle - apart, middle, middle + apart
-        place = Signal(range(self._cycles))
+        cycle = Signal(range(self._cycles))
         samples = Signal(2)
         bits = Signal(range(10))
         majority = (samples & line.replicate(2)).any() | samples.all()
-        m.d.sync += [self.received.valid.eq(0), self.received.error.eq(0), place.eq(place + 1)]
-        with m.If(place == self._cycles - 1):
-            m.d.sync += place.eq(0)
-        with m.If(Cat(place == vote for vote in votes[:2]).any()):
+        m.d.sync += [self.received.valid.eq(0), self.received.error.eq(0), cycle.eq(cycle + 1)]
+        with m.If(cycle == self._cycles - 1):
+            m.d.sync += cycle.eq(0)
+        with m.If(Cat(cycle == vote for vote in votes[:2]).any()):
             m.d.sync += samples.eq(Cat(line, samples[0]))
         with m.FSM():
             with m.State("idle"):
-                m.d.sync += [place.eq(1), bits.eq(0)]  # in cycle 0 of the start bit the line has just fallen
+                m.d.sync += [cycle.eq(1), bits.eq(0)]  # in cycle 0 of the start bit the line has just fallen
                 with m.If(~line):
                     m.next = "bits"
             with m.State("bits"):
-                with m.If(place == votes[2]):
+                with m.If(cycle == votes[2]):
                     m.d.sync += bits.eq(bits + 1)
                     with m.If((bits == 0) & majority):
                         m.next = "idle"
@@ -106,7 +106,7 @@ class Receiver(wiring.Component):
 
 
 class Transmitter(wiring.Component):
-    """Bytes to the line.
+    """Send bytes over the line.
 
     Members
     -------
@@ -121,17 +121,17 @@ class Transmitter(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        # a last 1 behind the stop bit ends it
+        # a 1 after the stop bit marks the end
         rest = Signal(9)
-        place = Signal(range(self._cycles))
+        cycle = Signal(range(self._cycles))
         busy = Signal()
         m.d.comb += self.bytes.ready.eq(~busy)
         with m.If(self.bytes.valid & self.bytes.ready):
-            m.d.sync += [busy.eq(1), rest.eq(Cat(self.bytes.data, 1)), self.tx.eq(0), place.eq(0)]
+            m.d.sync += [busy.eq(1), rest.eq(Cat(self.bytes.data, 1)), self.tx.eq(0), cycle.eq(0)]
         with m.If(busy):
-            m.d.sync += place.eq(place + 1)
-            with m.If(place == self._cycles - 1):
-                m.d.sync += [place.eq(0), self.tx.eq(rest[0]), rest.eq(rest >> 1)]
+            m.d.sync += cycle.eq(cycle + 1)
+            with m.If(cycle == self._cycles - 1):
+                m.d.sync += [cycle.eq(0), self.tx.eq(rest[0]), rest.eq(rest >> 1)]
                 with m.If(~rest.any()):
                     m.d.sync += [busy.eq(0), self.tx.eq(1)]
         return m

@@ -1,4 +1,4 @@
-"""The memory map: one table that the circuit, its driver, the manifest and the documentation read."""
+"""The memory map, one table for the circuit, its driver, the manifest and the documentation."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -11,7 +11,7 @@ from hw.map.control import Control
 from hw.parameters import Parameters
 
 ADDRESS = Record({"index": unsigned(16, 0), "word": unsigned(5, 0), "lane": unsigned(3, 0), "region": unsigned(3, 0)})
-"""A host address."""
+"""The fields of a host address."""
 
 
 class Region(IntEnum):
@@ -32,7 +32,7 @@ TABLE_WORDS = ("rho", "sigma")
 
 @dataclass(frozen=True)
 class Map:
-    """Words and depth of each region for a circuit's capacities."""
+    """The regions of a circuit's memory: their words, fields and depths."""
 
     parameters: Parameters
 
@@ -73,7 +73,7 @@ class Map:
         return Record({"value": formats[region][word]})
 
     def mask(self, address: int) -> int:
-        """The bits of a word that are there to be read back: those of its fields."""
+        """Return a mask of the bits of a word that a read gives back: those of its fields."""
         region = Region(ADDRESS.field("region", address))
         word = self.words(region)[ADDRESS.field("word", address)]
         return (1 << self.fields(region, word).width) - 1
@@ -82,11 +82,11 @@ class Map:
         return region == Region.NODE and word in NODE_FORCE
 
     def lanes(self, region: Region) -> int:
-        """How many lanes an address of the region may name; a write to materials and tables goes to all."""
+        """Return the number of lanes that an address may name. Writes of materials and tables go to all lanes."""
         return 1 if region in (Region.CONTROL, Region.NODE) else self.parameters.lanes
 
     def address(self, region: Region, word: int | str = 0, index: int = 0, lane: int = 0) -> int:
-        """Raises ValueError if the map has no such place."""
+        """Return an address. Raises ValueError if nothing is there."""
         number = self.words(region).index(word) if isinstance(word, str) else word
         limits = {"word": len(self.words(region)), "index": self.depth(region), "lane": self.lanes(region)}
         for name, value in (("word", number), ("index", index), ("lane", lane)):
@@ -96,5 +96,5 @@ class Map:
 
 
 def join(region: int, word: int, index: int, lane: int) -> int:
-    """Return the address."""
+    """Return the address with these fields."""
     return ADDRESS.pack({"index": index, "word": word, "lane": lane, "region": region})

@@ -1,4 +1,4 @@
-"""A circuit behind its link, used like the simulated one (`sim.backends.simulated_circuit.SimulatedCircuit`)."""
+"""A circuit that is reached over its link, used like `sim.backends.simulated_circuit.SimulatedCircuit`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from hw.link.description import key
 from hw.link.identity import Identity
-from hw.link.protocol import BUSY, Operation, Status
+from hw.link.protocol import BUSY, STATUS_TEXT, Operation, Status
 from hw.link.registers import LINK, Link
 from hw.machine.core import datapaths, faults
 from hw.map.control import MAGIC, Control
@@ -39,9 +39,9 @@ class Board:
     Attributes
     ----------
     parameters : Parameters
-        The circuit's, from its identity.
+        The parameters in the circuit's identity.
     faults : list of str
-        Names of the bits of its sticky faults.
+        Names of the bits of its faults register.
     session : Session
 
     Raises
@@ -77,7 +77,7 @@ class Board:
         CommandRefused
             If one is refused.
         ValueError
-            If data are longer than a word of the circuit.
+            If a word is longer than those of the circuit.
         """
         for _ in self._ask(segments.writes(self._checked(writes), self.session.items)):
             pass
@@ -97,10 +97,10 @@ class Board:
         for (_, counts), found in zip(checks, answers, strict=True):
             for count, crc in zip(counts, found, strict=True):
                 if zlib.crc32(b"".join(self.session.items.pack(next(wanted)) for _ in range(count))) != crc:
-                    raise LinkError("the circuit must hold what it was sent, but the CRC of its memories differs")
+                    raise LinkError("the circuit's memories must hold what was written, but their CRC differs")
 
     def run(self, cycles: int = 0) -> bool:
-        """Return whether a run goes on. Real circuits count their cycles themselves."""
+        """Return whether a run is under way. ``cycles`` is for simulated circuits; a real one has its own clock."""
         (answer,) = self.session.commands([(Operation.ACCESS, b"")])
         return bool(self._good(answer).status & BUSY)
 
@@ -116,7 +116,7 @@ class Board:
             self.wait()
 
     def exchange(self, payloads: Iterable[bytes]) -> Iterator[list[int]]:
-        """Yield the words that segments read, each payload between two steps of a run that goes on."""
+        """Yield the words that each payload's segments read, each payload between two steps of a run."""
         return self._ask(payloads, Operation.EXCHANGE)
 
     def counters(self) -> dict[str, int]:
@@ -125,7 +125,7 @@ class Board:
         return {register.name.lower(): int(word) for register, word in zip(Link, words, strict=True)}
 
     def watch(self, seconds: float):
-        """Let a run end after so many seconds without a good frame from the host; 0: never."""
+        """Set the time without a good frame from the host after which a run is ended, in seconds; 0: never."""
         self.write([(join(LINK, 0, Link.WATCHDOG, 0), round(seconds * self.session.identity.clock_hz))])
 
     def _checked(self, writes) -> list[tuple[int, int]]:
@@ -143,9 +143,11 @@ class Board:
     def _good(self, answer):
         status = Status(answer.status & ~BUSY)
         if status == Status.STRANGER:
-            raise LinkError("the circuit must stay as it is while it is used, but it was reset: start again")
+            raise LinkError("the circuit must not be reset while it is used, but it was: start again")
         if status != Status.DONE:
-            raise CommandRefused(f"the circuit must do what it is told, but says: {status.name.lower()}")
+            raise CommandRefused(
+                f"the circuit must accept each command, but answered {status.name}: {STATUS_TEXT[status]}"
+            )
         return answer
 
     def _control(self, register):
@@ -159,10 +161,11 @@ def _key(url: str, identity: Identity) -> bytes:
             raise ValueError(f"magic must be {MAGIC:#x}, not {identity.magic:#x}")
         own = key(identity.parameters())
     except ValueError as error:
-        raise OtherCircuit(f"--port must lead to a circuit of this version, not what is at {url}: {error}") from None
+        raise OtherCircuit(f"--port must lead to a circuit of this version, not the one at {url}: {error}") from None
     if identity.key != own:
         raise OtherCircuit(
-            f"--port must lead to a circuit with memory map {own.hex()}, as this version has, but the one at {url} has "
-            f"{identity.key.hex()}: build it anew (make bitstream), or use the version that it was built from"
+            f"--port must lead to a circuit with memory map {own.hex()}, as in this version, but the one at {url} has "
+            f"{identity.key.hex()}: build and load the circuit again (make bitstream, make flash), or use the version "
+            "that it was built with"
         )
     return own

@@ -1,23 +1,23 @@
-"""Errors between host and circuit, each with a name of its own."""
+"""Errors between host and circuit."""
 
 from golden.support.errors import InputError
 
 
 class LinkError(InputError):
-    """The circuit can't be reached, or isn't one that this host can talk to."""
+    """The host can't use the circuit."""
 
 
 class LineBroken(LinkError):
-    """The port can't be opened, or went away: an unplugged cable."""
+    """The port can't be opened, or disappeared, as when a cable is unplugged."""
 
 
 class NoAnswer(LinkError):
-    """Nothing that makes sense comes back."""
+    """The circuit doesn't answer."""
 
 
 class OtherCircuit(LinkError):
-    """The circuit speaks another version, or is too small."""
+    """The circuit is of another version, or too small."""
 
 
 class CommandRefused(LinkError):
-    """The circuit did not do what it was told."""
+    """The circuit refused a command."""

@@ -24,25 +24,26 @@ class Line(Protocol):
         """Send bytes. Raises `LineBroken` if the line is gone."""
 
     def read(self, seconds: float) -> bytes:
-        """Return the bytes that came, waiting for the first at most so long. Raises `LineBroken`."""
+        """Return the bytes that came; wait at most ``seconds`` for the first. Raises `LineBroken`."""
 
     def close(self) -> None:
-        """Let go of the line."""
+        """Close the line."""
 
 
 class SerialLine:
-    """A port: a device's name, or a URL such as ``socket://127.0.0.1:5000``.
+    """A port of this machine, or a socket.
 
     Parameters
     ----------
     url : str
+        A device's name, or a URL that pyserial knows, such as ``socket://127.0.0.1:5000``.
     baud : int
-        Bits a second; a URL to a socket has none of its own.
+        Bits a second; a socket ignores it.
 
     Raises
     ------
     LineBroken
-        If it can't be opened; also by `write` and `read` when it is gone.
+        If the port can't be opened. Also raised by `write` and `read` once it has disappeared.
     """
 
     def __init__(self, url: str, baud: int):

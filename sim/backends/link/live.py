@@ -1,4 +1,4 @@
-"""Hands on an object that is being simulated: positions and forces of some nodes, new velocities, between two steps."""
+"""Live access to nodes of an object on a board: read positions and forces, and write velocities, between two steps."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from sim.encode.order import ranks
 
 AXES = 3
 READ_ITEMS = 2 * AXES
-"""Items of an answer for a node: its position and the force on it."""
+"""Items of an answer for each node: position and force."""
 ASKED_ITEMS, MOVED_ITEMS = 2, 1 + AXES
-"""Items of a command for a node that is looked at, and how many more if its velocity is given as well."""
+"""Items of a command for each node, and how many more if it sets the velocity."""
 
 
 class Live:
-    """Some nodes of an object on a board, while it runs.
+    """Nodes of an object on a board, while it runs.
 
     Parameters
     ----------
@@ -35,12 +35,12 @@ class Live:
     Raises
     ------
     InputError
-        If there are more nodes than fit one exchange: only what is read in one is of one step.
+        If there are more nodes than fit one exchange. Only values of one exchange are of the same step.
     """
 
     def __init__(self, board: Board, encoded: EncodedScene, nodes):
         self._board, self._encoded, self._nodes = board, encoded, np.asarray(nodes)
-        self._places = ranks(encoded.node_order)[self._nodes]
+        self._ranks = ranks(encoded.node_order)[self._nodes]
         self._map = Map(board.parameters)
         self._items = Items.of_word(board.parameters.formats.state)
         most = most_nodes(self._items)
@@ -48,18 +48,18 @@ class Live:
             raise InputError(f"nodes must be 1 to {most}, which fit one exchange, not {len(self._nodes)}")
 
     def exchange(self, velocity=None) -> tuple[np.ndarray, np.ndarray]:
-        """Look at the nodes, and give them new velocities, between two steps.
+        """Read the nodes, and set their velocities, between two steps.
 
         Parameters
         ----------
         velocity : (n, dim) m/s, optional
-            For nodes that are driven: taken up with the next step.
+            For driven nodes; the next step uses it.
 
         Returns
         -------
         x : (n, dim) m
         force : (n, dim) N
-            Sum of all forces on the node, loads included: a driven or fixed node's device has to bear its negative.
+            Sum of all forces on the node, loads included. What holds a driven or fixed node bears its negative.
         """
         (words,) = self._board.exchange([self.payload(velocity)])
         raw = Q(self._board.parameters.formats.state, 0).from_bits(np.array(words)).reshape(len(self._nodes), 2, AXES)
@@ -74,25 +74,25 @@ class Live:
             fmt, units = self._encoded.image.formats, self._encoded.units
             raw = raw_vectors(np.asarray(velocity) / units.velocity, fmt.velocity)
             mask = (1 << fmt.state) - 1
-            for place, words in zip(self._places, raw.tolist(), strict=True):
-                parts.append(items.head(Kind.WRITE, self._address(NODE_STATE[AXES], place), AXES, across=True))
+            for rank, words in zip(self._ranks, raw.tolist(), strict=True):
+                parts.append(items.head(Kind.WRITE, self._address(NODE_STATE[AXES], rank), AXES, across=True))
                 parts += [items.pack(word & mask) for word in words]
-        for place in self._places:
+        for rank in self._ranks:
             for word in (NODE_STATE[0], NODE_FORCE[0]):
-                parts.append(items.head(Kind.READ, self._address(word, place), AXES, across=True))
+                parts.append(items.head(Kind.READ, self._address(word, rank), AXES, across=True))
         return b"".join(parts)
 
-    def _address(self, word, place):
-        return self._map.address(Region.NODE, word, int(place))
+    def _address(self, word, rank):
+        return self._map.address(Region.NODE, word, int(rank))
 
 
 def most_nodes(items: Items) -> int:
-    """Nodes that fit one exchange."""
+    """Return the most nodes that fit one exchange."""
     return min(items.command_most // (ASKED_ITEMS + MOVED_ITEMS), items.answer_most // READ_ITEMS)
 
 
 def line_bytes(nodes: int, items: Items, moved: bool = True) -> tuple[int, int]:
-    """Bytes on the line of an exchange about so many nodes: (to the circuit, from it)."""
+    """Return an exchange's bytes on the line for so many nodes: (to the circuit, from it)."""
     asked = nodes * (ASKED_ITEMS + moved * MOVED_ITEMS) * items.bytes
     given = (1 + nodes * READ_ITEMS) * items.bytes
     return tuple(len(Frame(1, 1, payload=b"\1" * count).packed(b"")) for count in (asked, given))

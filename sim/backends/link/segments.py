@@ -1,4 +1,4 @@
-"""Accesses to many words, as few segments and payloads as hold them."""
+"""Pack accesses to many words into as few segments and payloads as possible."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from hw.link.protocol import COUNT_MOST, Kind
 from hw.map.memory_map import ADDRESS
 
 STRIDES = {False: 1, True: 1 << ADDRESS.offsets["word"]}
-"""From a word's address to the next: places of one word, or (across) words of one place."""
+"""Steps from a word's address to the next: the next index, or, across, the next word of the same index."""
 
 
 def runs(addresses: Iterable[int], most: int = COUNT_MOST) -> Iterator[tuple[int, int, bool]]:
-    """(address, count, across) of what segments reach, in order."""
+    """Yield (address, count, across) of segments that access the addresses in order."""
     begin, count, across = None, 0, False
     for address in addresses:
         if count == 1 and address - begin in STRIDES.values():
@@ -30,7 +30,7 @@ def runs(addresses: Iterable[int], most: int = COUNT_MOST) -> Iterator[tuple[int
 
 
 def writes(pairs: list[tuple[int, int]], items: Items) -> Iterator[bytes]:
-    """Payloads that write (address, word) pairs in this order."""
+    """Yield payloads that write (address, word) pairs in order."""
     words, payload = iter(word for _, word in pairs), b""
     for begin, count, across in runs(address for address, _ in pairs):
         while count:
@@ -47,7 +47,7 @@ def writes(pairs: list[tuple[int, int]], items: Items) -> Iterator[bytes]:
 
 
 def reads(addresses: list[int], items: Items) -> Iterator[bytes]:
-    """Payloads whose answers have the words at these addresses in this order."""
+    """Yield payloads that read the words at these addresses in order."""
     payload, given = b"", 0
     for begin, count, across in runs(addresses):
         while count:
@@ -63,7 +63,7 @@ def reads(addresses: list[int], items: Items) -> Iterator[bytes]:
 
 
 def checks(addresses: list[int], items: Items) -> Iterator[tuple[bytes, list[int]]]:
-    """(payload, how many words each of its checks is about)"""
+    """Yield (payload, number of words of each of its checks)."""
     payload, counts = b"", []
     for begin, count, across in runs(addresses):
         if len(payload) + items.bytes > PAYLOAD_MOST or len(counts) == items.answer_most:

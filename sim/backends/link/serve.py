@@ -1,4 +1,4 @@
-"""A simulated circuit on a loopback socket, as a board would be on a serial port."""
+"""Serve a simulated circuit on a loopback socket, in place of a board on a serial port."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from hw.link.items import LEAST, Items
 
 HOST = "127.0.0.1"
 SLICE = 2000
-"""Cycles between two looks at the socket."""
+"""Cycles that are simulated between two reads of the socket."""
 QUIET = 2 * longest(Items(LEAST))
-"""Cycles without anything on the line or going on after which time stands still until the host speaks: more than any
-command takes."""
+"""Cycles without activity after which the simulation pauses until the host sends something: more than any command
+takes."""
 
 
 def listener(port: int) -> socket.socket:
-    """A socket on loopback; port 0: one that is free. Raises `InputError` if it is taken."""
+    """Return a socket that listens on loopback; port 0 chooses a free one. Raises `InputError` if the port is taken."""
     server = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         server.bind((HOST, port))
     except OSError as error:
         server.close()
-        raise InputError(f"--port must be a port of this machine that is free, not {port}: {error.strerror}") from None
+        raise InputError(f"--port must be a free port of this machine, not {port}: {error.strerror}") from None
     server.listen(1)
     return server
 
 
 def serve(server: socket.socket, circuit, ends: Callable[[], bool] = lambda: False) -> None:
-    """Let one host after the other talk to a `sim.backends.link.served.SerialCircuit`, which stays as each left it.
+    """Connect one host after another to a `sim.backends.link.served.SerialCircuit`, which keeps its state between them.
 
-    ``ends()`` is asked between two slices, and every second while nobody is there.
+    ``ends()`` is called after each slice, and every second while no host is connected. True ends the service.
     """
     server.settimeout(1.0)
     while not ends():

@@ -1,4 +1,4 @@
-"""The whole circuit under Verilator, with bits on its serial pins."""
+"""The whole circuit under Verilator, driven through its serial pins."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from sim.backends.verilated import library, opened
 SHIM = Path(__file__).with_name("serial.cpp")
 ROOM = 1 << 16
 CLOCK_HZ, BAUD = 24_000_000, 3_000_000
-"""As few cycles a bit as the receiver needs: simulation takes its time for each."""
+"""The fewest cycles a bit that the receiver allows, because each takes time to simulate."""
 
 
 class SerialCircuit:
-    """A simulated circuit's two ends of the line.
+    """A simulated circuit, as a host sees it over the line.
 
     Parameters
     ----------
     parameters : Parameters
     clock_hz, baud : int
-        Only their ratio matters here: the cycles of a bit.
+        Only their ratio matters: the cycles of a bit.
     folder : Path
-        Where compiled circuits are kept.
+        Compiled circuits are kept there.
     host_error : float
-        By how much the host's rate is too high.
+        Relative error of the host's rate; positive if it is too high.
 
     Attributes
     ----------
     linked : hw.link.top.Linked
-        What the circuit was made from.
+        The circuit's source.
     """
 
     def __init__(self, parameters: Parameters, *, clock_hz: int, baud: int, folder: Path, host_error: float = 0.0):
@@ -50,13 +50,13 @@ class SerialCircuit:
         self._out = ctypes.create_string_buffer(ROOM)
 
     def run(self, data: bytes, cycles: int) -> bytes:
-        """Send ``data`` after what is still on its way, run so many cycles, and return what comes out."""
+        """Send ``data`` after earlier bytes, run so many cycles, and return the bytes that came."""
         came = self._shared.serial_run(self._handle, data, len(data), cycles, self._out, ROOM)
         return self._out.raw[:came]
 
     @property
     def idle(self) -> bool:
-        """Nothing is on the line, and no steps are run."""
+        """True if nothing is on the line and no run is under way."""
         return bool(self._shared.serial_idle(self._handle))
 
     @property

@@ -1,4 +1,4 @@
-"""A session with a circuit: commands and answers, each done exactly once and in order, whatever the line loses."""
+"""A session with a circuit: each command is done exactly once and in order, whatever the line loses."""
 
 from __future__ import annotations
 
@@ -22,33 +22,33 @@ Command = tuple[Operation, bytes]
 
 
 class Session:
-    """Go-back-N with a window of `hw.link.protocol.WINDOW` commands.
+    """Send commands by go-back-N, with a window of `hw.link.protocol.WINDOW`.
 
     Parameters
     ----------
     line : Line
     key_of : callable
-        Return the key of the circuit with an identity.
+        Returns the key for an identity, or raises `OtherCircuit`.
     timeout : float
         Seconds until the commands under way are sent again.
     attempts : int
     clock : callable
-        Seconds; a simulated line has a time of its own.
+        Returns seconds; a simulated line has its own time.
 
     Attributes
     ----------
     identity : Identity
     items : Items
-        As the circuit takes and gives them.
+        The form of the circuit's items.
     retries : int
-        How often the commands under way were sent again.
+        Number of times that the commands under way were sent again.
     damaged : int
-        Damaged frames that came.
+        Number of damaged frames that came.
 
     Raises
     ------
     NoAnswer
-        If so many attempts in a row bring no answer; also raised by `commands`.
+        If no answer came to ``attempts`` transmissions in a row; also raised by `commands`.
     OtherCircuit
         If the circuit has another version of the protocol.
     """
@@ -68,7 +68,7 @@ class Session:
         self._key = key_of(self.identity)
 
     def commands(self, wanted: Iterable[Command]) -> Iterator[Frame]:
-        """Return the answers, in order, as they come; the next commands are under way already."""
+        """Yield the answers in order as they come, while the next commands are under way."""
         wanted, under_way = iter(wanted), deque()
         more = True
         while more or under_way:
@@ -95,13 +95,13 @@ class Session:
             self.retries += 1
             self._send(under_way)
         raise NoAnswer(
-            f"--port must lead to a circuit that answers, but {self._line.url} was silent "
-            f"for {self._attempts * self._timeout:.3g} s ({self.damaged} damaged frames came): it must be "
-            "loaded (make flash) and have the rate of --baud"
+            f"--port must lead to a circuit that answers, but no answer came from {self._line.url} within "
+            f"{self._attempts * self._timeout:.3g} s, and {self.damaged} damaged frames: check that the board is "
+            "loaded (make flash), that --port is its serial port, and that --baud is the rate it was built for"
         )
 
     def _greet(self) -> Identity:
-        """Begin a session. An earlier one is over, and so is a frame that was begun on the line."""
+        """Begin a session; it ends an earlier one, and the zero byte ends an unfinished frame on the line."""
         nonce = secrets.randbits(8 * LEAST)
         self._seq = secrets.randbits(8)
         greeting = self._frame(Operation.HELLO, nonce.to_bytes(GREETING_BYTES, "little"))
@@ -119,7 +119,7 @@ class Session:
                 raise OtherCircuit(
                     f"--port must lead to a circuit of this version, but its identity has another form: {error}"
                 ) from None
-            under_way.append(greeting)  # an answer to somebody else's greeting
+            under_way.append(greeting)  # it answered an earlier host's greeting
 
     def _frame(self, operation: Operation, payload: bytes) -> Frame:
         frame = Frame(operation, self._seq, payload=payload)
