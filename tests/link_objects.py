@@ -1,4 +1,4 @@
-"""Bytes into the link's parts and out of them, cycle by cycle."""
+"""Drivers of the link's components, cycle by cycle."""
 
 from hw.blocks.memory import READ_LATENCY
 from hw.link.interfaces import EVENTS
@@ -8,7 +8,7 @@ KEY = bytes(range(0xA0, 0xA8))
 
 
 async def feed(ctx, receiver, line: bytes, seen: dict[str, int]):
-    """Bytes into a `FrameReceiver`; adds to what it counts."""
+    """Send bytes to a `FrameReceiver`, and add its events to ``seen``."""
     for byte in line:
         ctx.set(receiver.received.valid, 1)
         ctx.set(receiver.received.data, byte)
@@ -23,7 +23,7 @@ async def feed(ctx, receiver, line: bytes, seen: dict[str, int]):
 
 
 async def taken(ctx, receiver):
-    """(type, seq, payload) of the frame that waits first; it is taken."""
+    """Take the first frame that waits; return (type, seq, payload)."""
     assert ctx.get(receiver.frame)
     payload = []
     for index in range(ctx.get(receiver.length)):

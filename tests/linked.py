@@ -1,4 +1,4 @@
-"""A small circuit behind its link, simulated by Verilator: bytes in, bytes out."""
+"""A small circuit with its link, simulated by Verilator: bytes in, bytes out."""
 
 import ctypes
 import functools
@@ -26,7 +26,7 @@ ITEMS = Items.of_word(SMALL.formats.state)
 IDENTITY = [MAGIC, 0x123456789]
 ROOM = 100_000
 QUIET = 5000
-"""Cycles after which nothing more comes: what the longest command takes, and the CRC of its answer."""
+"""Cycles after which no more bytes come, more than a command of these tests and the CRC of its answer take."""
 
 
 class Linked(wiring.Component):
@@ -54,7 +54,7 @@ def verilog() -> str:
 
 
 class Line:
-    """The simulated circuit's two ends of the line."""
+    """The simulated circuit, as a host sees it."""
 
     def __init__(self):
         shared = opened(library("linked", verilog(), SHIM, folder=BUILD))
@@ -77,7 +77,7 @@ class Line:
         return out.raw[:came]
 
     def exchange(self, *commands: Frame) -> list[Frame]:
-        """The answers to commands, each sent when nothing comes any more for the one before."""
+        """Return the answers to commands; each is sent when the answer before it has ended."""
         out = b""
         for command in commands:
             out += self.send(command.packed(KEY), QUIET)

@@ -1,4 +1,4 @@
-"""A small circuit behind its serial pins, simulated: on a socket, or on a line that damages what passes."""
+"""A small simulated circuit with its serial pins on a socket, or on a line that damages bytes."""
 
 import contextlib
 import threading
@@ -20,7 +20,7 @@ def serial_circuit(parameters=SMALL, **kwargs) -> SerialCircuit:
 
 
 class Service:
-    """``url``, and ``stop()``: whoever talks to it loses the line."""
+    """A service at ``url``; ``stop()`` disconnects its host."""
 
     def __init__(self, circuit):
         self._server, self._ended = serve.listener(0), threading.Event()
@@ -46,7 +46,7 @@ def served(parameters=SMALL):
 
 
 class NoisyLine:
-    """A line to a `SerialCircuit`, in its time; of the bytes each way a share is another one, missing or twice."""
+    """A line to a `SerialCircuit`, in simulated time; a share of the bytes each way is changed, lost or doubled."""
 
     SLICE = 200
     url = "simulated"

@@ -1,4 +1,4 @@
-"""A frame's CRC in the circuit is zlib's over key and frame."""
+"""The CRC of a frame is that of zlib over key and frame."""
 
 import zlib
 
@@ -11,7 +11,7 @@ from hw.link.frame import ANSWER, GREETING, KEY_BYTES
 
 
 @pytest.mark.parametrize(("type_", "keyed"), [(GREETING, False), (GREETING | ANSWER, False), (2, True), (0x83, True)])
-def test_frames_one_after_the_other(type_, keyed, rng):
+def test_frames_in_a_row_have_the_crc_of_zlib(type_, keyed, rng):
     dut, frames = FrameCrc(KEY), [bytes([type_]) + rng.bytes(n) for n in (0, 1, 40)]
 
     async def bench(ctx):

@@ -1,5 +1,5 @@
-"""Damaged frames in front of the circuit: nothing of any is applied, each is counted as what it is, and the next good
-frame is accepted. The host's decoder (cobs, zlib) says which still are frames."""
+"""Damaged frames: the circuit applies none, counts each by its kind, and accepts the next good frame. The host's
+decoder (cobs, zlib) tells which are still frames."""
 
 import random
 from collections import Counter
@@ -20,12 +20,12 @@ from hw.map.memory_map import join
 
 MILLION = 1_000_000
 NEXT_GOOD = 8
-"""Damaged frames in front of a good one, at the most."""
+"""Most damaged frames before a good one."""
 COUNTERS = [Link[event.upper()] for event in EVENTS]
 WORDS = 3
-"""That are looked at, and that the damaged frames would have written."""
+"""Number of words that are read, and that the damaged frames would write."""
 COUNTED_EVERY = 20
-"""Good frames: so often the counters are read as well."""
+"""Good frames from one that reads the counters to the next."""
 
 
 def flips(r, frame, _):
@@ -66,7 +66,7 @@ KINDS = flips, drops, inserts, bursts, truncations, splices, noise
 
 
 def damaged(r, seq):
-    """(a command that would write, made into something that is no frame, and a zero; what has to be counted)"""
+    """Return (a write command that was damaged until it is no frame, with a zero; the events to count)."""
     frame, other = (
         access(seq, *(write(X + n, r.getrandbits(36) | 1) for n in range(r.randint(1, WORDS)))).packed(KEY)
         for _ in range(2)
@@ -74,12 +74,12 @@ def damaged(r, seq):
     while True:
         bad = bytes(r.choice(KINDS)(r, frame, other)) + b"\0"
         counted = [told(part) for part in bad.split(b"\0") if part]
-        if "good_frames" not in counted:  # a zero that went or came, or a splice of two halves that fit
+        if "good_frames" not in counted:  # else a zero was lost or added, or two halves fit together
             return bad, counted
 
 
 def answered(words: int) -> int:
-    """Cycles in which an answer is out: each byte is looked for, and sent, and some are of COBS."""
+    """Return the cycles until an answer is sent; each byte is read twice more, and COBS adds some."""
     work = Work(segments=2, read=words)
     return cycles(work, ITEMS) + 3 * LOOK * (LEAST + ITEMS.bytes * work.items)
 

@@ -1,4 +1,4 @@
-"""Commands on a real circuit: what is asked for is done, once and in order, or refused with a word."""
+"""Commands on a real circuit: each is done once and in order, or refused with a status."""
 
 import itertools
 import zlib
@@ -18,7 +18,7 @@ from sim.encode.program import Program
 
 
 def exchanged(*commands: Frame) -> list[Frame]:
-    """A circuit's answers, from its reset on."""
+    """Return a new circuit's answers."""
     line = Line()
     answers = line.exchange(*commands)
     line.close()
@@ -49,13 +49,13 @@ def access(seq, *segments, operation=Operation.ACCESS):
     return Frame(operation, seq, payload=b"".join(segments))
 
 
-def test_a_greeting_tells_who_is_there():
+def test_a_greeting_is_answered_with_the_identity():
     (answer,) = exchanged(hello(9, nonce=0xABCDE))
     payload = b"".join(map(ITEMS.pack, (0, 0xABCDE, *IDENTITY)))
     assert answer == Frame(Operation.HELLO | ANSWER, 9, Status.DONE, payload, ITEMS.bytes)
 
 
-def test_what_is_written_is_read_and_checked(rng):
+def test_written_words_are_read_and_checked(rng):
     words = [int(w) for w in rng.integers(0, 1 << 36, 12)]
     x, v = (Map(SMALL).address(Region.NODE, name, 3) for name in ("x_x", "v_x"))
     _, wrote, got = exchanged(
@@ -69,7 +69,7 @@ def test_what_is_written_is_read_and_checked(rng):
     assert (got.seq, got.status) == (2, Status.DONE)
 
 
-def test_a_refused_word_is_told_and_the_others_done():
+def test_a_refused_word_is_reported_and_the_others_are_done():
     load = Map(SMALL).address(Region.NODE, "load_x", 0)
     _, wrote, got = exchanged(
         hello(),
@@ -93,32 +93,32 @@ X = Map(SMALL).address(Region.NODE, "x_x", 0)
         (access(1, write(X, 5), operation=9), Status.UNKNOWN),
     ],
 )
-def test_a_payload_that_is_not_what_it_should_be_does_nothing(frame, status):
+def test_a_malformed_payload_does_nothing(frame, status):
     _, answer, after = exchanged(hello(), frame, access(2, read(X)))
     assert answer == Frame(frame.type | ANSWER, 1, status, ITEMS.pack(0), ITEMS.bytes)
     assert ITEMS.split(after.payload) == [0, 0]
 
 
-def test_an_answer_may_be_as_long_as_it_says():
+def test_the_longest_answer_is_sent():
     _, answer = exchanged(hello(), access(1, read(X, 16), *[read(X, 14)] * 6))
     assert len(ITEMS.split(answer.payload)) == ITEMS.answer_most + 1 and answer.status == Status.DONE
 
 
-def test_before_a_greeting_nothing_is_done():
+def test_a_command_before_a_greeting_does_nothing():
     stranger, _, got = exchanged(access(0, write(X, 5)), hello(7), access(8, read(X)))
     assert stranger == Frame(Operation.ACCESS | ANSWER, 0, Status.STRANGER, ITEMS.pack(0), ITEMS.bytes)
     assert ITEMS.split(got.payload) == [0, 0]
 
 
 def test_each_command_is_done_once_and_in_order():
-    """One that comes again is answered again; one too early is dropped."""
+    """A repeated command is answered again; one that comes too early is dropped."""
     add = [access(n, write(X, 10 + n), read(X)) for n in range(1, 4)]
     answers = exchanged(hello(), add[0], add[2], add[0], add[1], add[0], add[2], access(4, read(X)))
     seen = [(answer.seq, ITEMS.split(answer.payload)[1]) for answer in answers[1:]]
     assert seen == [(1, 11), (1, 11), (2, 12), (1, 11), (3, 13), (4, 13)]
 
 
-def test_a_new_greeting_begins_anew():
+def test_a_new_greeting_begins_a_new_session():
     answers = exchanged(hello(), access(1, write(X, 5)), hello(100), access(101, read(X)), access(2, read(X)))
     assert [a.seq for a in answers] == [0, 1, 100, 101] and ITEMS.split(answers[-1].payload) == [0, 5]
 
@@ -127,7 +127,7 @@ STEPS = 200
 
 
 def loaded(image):
-    """Commands that load an image, from a greeting on."""
+    """Yield a greeting, and the commands that load an image."""
     program = Program(image, SMALL)
     writes = itertools.chain(program.load(), program.start(image.v, image.x))
     yield hello()
@@ -139,13 +139,13 @@ def loaded(image):
 
 
 def state(answer) -> tuple[np.ndarray, ...]:
-    """(N, 3) positions and forces that `LOOK` asked for."""
+    """Return the (N, 3) positions and forces in an answer."""
     words = np.array(ITEMS.split(answer.payload)[1:]).reshape(2, 3, -1)
     top = 1 << SMALL.formats.state - 1
     return tuple(((part ^ top) - top).T for part in words)
 
 
-def test_a_run_that_is_looked_at_shows_whole_steps_and_ends_with_the_same_bits(rng):
+def test_exchanges_see_whole_steps_and_leave_the_run_as_it_is(rng):
     image = random_image(rng, nodes=12, edges=16, materials=2, tables=1)
     model, line = NativeMachine(image), Line()
     names = [f"{quantity}_{axis}" for quantity in ("x", "force") for axis in "xyz"]
@@ -173,8 +173,8 @@ def test_a_run_that_is_looked_at_shows_whole_steps_and_ends_with_the_same_bits(r
     assert number == STEPS - 1 and len(seen) > 4
 
 
-def test_a_run_that_ends_while_it_is_paused_is_over(rng):
-    """The pause begins anywhere in the last steps: nothing may be taken for the number of steps done but that."""
+def test_a_run_that_ends_while_it_is_being_paused_is_over(rng):
+    """The pause begins anywhere in the last steps; only the true number of steps done may count."""
     image, line = random_image(rng, nodes=12, edges=16, materials=2, tables=1), Line()
     commands = list(loaded(image))
     line.exchange(*commands)

@@ -1,4 +1,4 @@
-"""Frames in software: what is packed is unpacked; what is damaged is refused with the device's word for it."""
+"""Frames in software: a packed frame is unpacked again; a damaged one is refused by its kind."""
 
 import pytest
 from hw_objects import refused
@@ -32,7 +32,7 @@ def test_the_wire_format_is_pinned():
         (Frame(2, 0).packed(bytes(8))[1:-1], "crc_errors"),
     ],
 )
-def test_what_is_no_frame_is_refused(coded, kind):
+def test_bytes_that_are_no_frame_are_refused(coded, kind):
     with pytest.raises(FrameError, match=f"^{kind}$") as raised:
         unpacked(coded, KEY)
     assert raised.value.kind == kind
@@ -42,5 +42,5 @@ def test_a_greeting_needs_no_key():
     assert unpacked(Frame(GREETING, 9).packed(KEY)[1:-1], bytes(8)) == Frame(GREETING, 9)
 
 
-def test_a_payload_has_an_end():
+def test_a_payload_that_is_too_long_is_refused():
     refused(lambda: Frame(2, 0, payload=bytes(513)).packed(KEY), "payload must be at most 512 bytes, not 513")

@@ -1,4 +1,4 @@
-"""Items hold the words of any circuit: as many bytes as a word needs, and nothing is cut."""
+"""Items hold the words of any circuit: they have as many bytes as a word needs, and no bit is lost."""
 
 import pytest
 from hw_objects import refused

@@ -1,4 +1,4 @@
-"""Frames as they come: a good one arrives whole, nothing of a damaged one does, and each kind of damage is counted."""
+"""The frame receiver: a good frame arrives whole, a damaged one not at all, and each kind of damage is counted."""
 
 from collections import Counter
 
@@ -28,13 +28,13 @@ def received(line: bytes, frames: int):
 @pytest.mark.parametrize("size", [0, 1, 242, 243, 244, 245, 246, 300, PAYLOAD_MOST])
 @pytest.mark.parametrize("content", ["zeros", "ones", "random"])
 def test_a_frame_arrives_whole(size, content, rng):
-    """Around the sizes at which COBS begins another block."""
+    """Sizes are those around which COBS begins another block."""
     payload = {"zeros": bytes(size), "ones": b"\1" * size, "random": rng.bytes(size)}[content]
     frame = Frame(7, 200, payload=payload)
     assert received(frame.packed(KEY), 1) == ({"good_frames": 1}, [(7, 200, payload)])
 
 
-def test_frames_wait_for_their_turn_and_the_one_too_many_is_dropped(rng):
+def test_frames_wait_in_order_and_one_too_many_is_dropped(rng):
     payloads = [rng.bytes(n) for n in range(SLOTS + 1)]
     line = b"".join(Frame(2, n, payload=payload).packed(KEY) for n, payload in enumerate(payloads))
     seen, got = received(line, SLOTS)
@@ -43,7 +43,7 @@ def test_frames_wait_for_their_turn_and_the_one_too_many_is_dropped(rng):
 
 
 def test_a_frame_for_which_room_comes_too_late_is_dropped(rng):
-    """Its first bytes found none."""
+    """There is room again only after its first bytes."""
     dut, seen = FrameReceiver(KEY), Counter()
     frames = [(2, n, rng.bytes(20)) for n in range(SLOTS + 2)]
     packed = [Frame(type_, n, payload=payload).packed(KEY) for type_, n, payload in frames]
@@ -75,7 +75,7 @@ DAMAGES = 150
 
 
 def damaged(rng):
-    """(bytes without zeros, kind) of frames with a byte changed, lost, doubled, or the rest missing."""
+    """Yield (bytes without zeros, kind) of frames with a byte changed, lost or doubled, or with the rest missing."""
     for n in range(DAMAGES):
         good = Frame(2, n, payload=rng.bytes(int(rng.integers(0, 9)))).packed(KEY)[1:-1]
         at = int(rng.integers(len(good)))

@@ -1,4 +1,4 @@
-"""The link's own registers, through the link: what they count, and what the watchdog does."""
+"""The link's own registers, accessed over the link: counters and watchdog."""
 
 import numpy as np
 from integer_objects import random_image
@@ -30,7 +30,7 @@ def test_every_register_has_a_text():
     assert set(LINK_TEXT) == set(Link)
 
 
-def test_what_happens_to_frames_is_counted():
+def test_the_fates_of_frames_are_counted():
     line = Line()
     packed = access(1, read(control(Control.MAGIC))).packed(KEY)
     line.exchange(hello())
@@ -48,7 +48,7 @@ def test_what_happens_to_frames_is_counted():
     assert wrote.status == Status.DONE and counted(after) == {**damage, "DUPLICATES": 1}
 
 
-def test_what_is_no_register_or_no_count_is_refused():
+def test_an_address_without_a_register_and_a_value_that_is_too_long_are_refused():
     line = Line()
     _, beyond, large, after = line.exchange(
         hello(),
@@ -61,15 +61,15 @@ def test_what_is_no_register_or_no_count_is_refused():
     assert ITEMS.split(beyond.payload) == [0, 0]
 
 
-def test_a_greeting_that_is_not_one_begins_no_session():
+def test_a_malformed_greeting_begins_no_session():
     line = Line()
     wrong, stranger = line.exchange(Frame(Operation.HELLO, 4), access(5, read(control(Control.MAGIC))))
     line.close()
     assert (wrong.status, stranger.status) == (Status.MALFORMED, Status.STRANGER)
 
 
-def test_a_segment_too_long_stays_in_its_word():
-    """Words 31 and 0 of place 5 come behind one another, not word 0 of the next lane."""
+def test_a_segment_that_is_too_long_wraps_within_its_field():
+    """After word 31 of index 5 comes its word 0, not word 0 of the next lane."""
     line = Line()
     place = join(1, 30, 5, 0)
     _, wrote, got = line.exchange(
@@ -80,7 +80,7 @@ def test_a_segment_too_long_stays_in_its_word():
 
 
 def run_of(rng, steps, silence):
-    """(line, first free seq, model) with a run that was begun; the host's silence may last so many cycles."""
+    """Return (line, first free seq, model) after a run was begun, with a watchdog of so many cycles."""
     image, line = random_image(rng, nodes=12, edges=16, materials=2, tables=1), Line()
     commands = list(loaded(image))
     line.exchange(*commands)
@@ -113,7 +113,7 @@ def test_a_run_ends_when_the_host_is_silent(rng):
     assert np.array_equal(((np.array(x).reshape(3, -1) ^ top) - top).T, model.x)
 
 
-def test_a_run_goes_on_while_the_host_speaks(rng):
+def test_a_run_goes_on_while_frames_come(rng):
     line, seq, _ = run_of(rng, 1000, 20_000)
     for number in range(10):
         line.send(access(seq + number, read(control(Control.BUSY))).packed(KEY), 12_000)

@@ -1,4 +1,4 @@
-"""Frames that are sent are COBS of the answer and its CRC: the cobs package and zlib read them."""
+"""The frame sender: the cobs package and zlib decode its frames."""
 
 import pytest
 from hw_objects import simulate
@@ -13,7 +13,7 @@ def frame(number, payload, type_=2):
 
 
 async def stored(ctx, dut, number, frame):
-    """Write an answer, and ask for it."""
+    """Write an answer and request it."""
     body = HEADER.pack(frame.type, frame.seq, frame.status, 0, len(frame.payload)) + frame.payload
     ctx.set(dut.write, 1)
     ctx.set(dut.write_answer, number)
@@ -35,7 +35,7 @@ async def asked(ctx, dut, number, length):
 
 
 async def line(ctx, dut, rng, slow=0.3) -> bytes:
-    """All that is sent until nothing waits, to a line that isn't always ready."""
+    """Return all bytes that are sent until no answer waits; the line isn't always ready."""
     sent = []
     while ctx.get(dut.waits):
         ready = rng.random() > slow
@@ -63,7 +63,7 @@ def test_an_answer_is_sent_as_a_frame(size, content, rng):
     simulate(dut, bench)
 
 
-def test_answers_are_sent_in_their_order_each_once_and_again_when_asked(rng):
+def test_answers_are_sent_in_order_once_and_again_on_request(rng):
     dut = FrameSender(KEY)
     kept = [frame(n, rng.bytes(n), GREETING if n == 3 else 2) for n in range(ANSWERS)]
     order = [int(n) for n in rng.permutation(ANSWERS)]
@@ -83,7 +83,7 @@ def test_answers_are_sent_in_their_order_each_once_and_again_when_asked(rng):
     simulate(dut, bench)
 
 
-def test_what_was_never_stored_is_not_sent():
+def test_an_answer_that_was_never_stored_is_not_sent():
     dut = FrameSender(KEY)
 
     async def bench(ctx):

@@ -1,4 +1,4 @@
-"""The serial line: bytes at rates that are off, noise, missing stop bits, breaks."""
+"""The serial line: bytes at slightly wrong rates, noise, missing stop bits, breaks."""
 
 import itertools
 import re
@@ -73,7 +73,7 @@ def received(cycles: int, levels: list[int]) -> list[int | str]:
 
 
 def sampled(bits: list[int], length: float) -> list[int]:
-    """The line's level in each cycle, for bits of a length that need not be whole; idle before and behind."""
+    """Return the line's level in each cycle, for bits of any length in cycles; idle before and after."""
     levels = [bits[int(cycle / length)] for cycle in range(int(len(bits) * length))]
     return [1] * 20 + levels + [1] * 20
 
@@ -81,7 +81,7 @@ def sampled(bits: list[int], length: float) -> list[int]:
 @pytest.mark.parametrize("cycles", [LEAST_CYCLES, 9, 41, 125])
 @pytest.mark.parametrize("off", [-0.02, 0.0, 0.02])
 def test_bytes_arrive_at_a_rate_that_is_off_by_two_percent(cycles, off, rng):
-    """One behind the other, without a pause."""
+    """They follow each other without a pause."""
     sent = [0x00, 0xFF, 0x55, 0xAA, *(int(b) for b in rng.integers(0, 256, 20))]
     bits = [bit for byte in sent for bit in line_of(byte)]
     assert received(cycles, sampled(bits, cycles * (1 + off))) == sent
@@ -89,8 +89,8 @@ def test_bytes_arrive_at_a_rate_that_is_off_by_two_percent(cycles, off, rng):
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("cycles", [LEAST_CYCLES, 41])
-def test_how_much_a_rate_may_be_off(cycles, rng, figure):
-    """For bytes without a pause between them, in steps of half a per cent."""
+def test_the_receiver_tolerates_its_stated_rate_error(cycles, rng, figure):
+    """Measured in steps of half a per cent, with bytes that follow each other without a pause."""
     sent = [0x00, 0xFF, 0x55, 0xAA, *(int(b) for b in rng.integers(0, 256, 20))]
     bits = [bit for byte in sent for bit in line_of(byte)]
 
@@ -112,7 +112,7 @@ def test_a_short_pulse_is_no_start_bit_and_one_wrong_sample_no_wrong_bit(cycles,
     for byte in sent:
         for bit in line_of(byte):
             wave = [bit] * cycles
-            if bit == 1:  # the middle sample; two registers stand between the line and it
+            if bit == 1:  # the middle sample, which is two registers after the line
                 wave[cycles // 2] = 0
             levels += wave
     assert received(cycles, levels + [1] * 20) == sent

@@ -56,7 +56,7 @@ def test_another_size_reaches_everything():
 
 
 def names_in(path: Path) -> set[str]:
-    """Names of sizes that stand in the file as text, in no docstring, or as names of fields."""
+    """Return the names of sizes in a file's strings, docstrings aside, and among its fields."""
     found = set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):

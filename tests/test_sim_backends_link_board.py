@@ -1,4 +1,4 @@
-"""The driver against the whole circuit behind its serial pins, on a socket: the same bits, or a word that says why."""
+"""The driver against the whole simulated circuit on a socket: the same bits as without a link, or one line of error."""
 
 import re
 import threading
@@ -37,7 +37,7 @@ def control(register):
 
 
 def runs(scene, service, folder) -> tuple:
-    """Return what ``run`` writes of a scene on the board and on the simulated circuit."""
+    """Return the results that ``run`` writes for a scene on the board and on the simulated circuit."""
     out = [folder / name for name in ("board", "rtl")]
     assert main(["run", str(scene), "--backend", "board", "--port", service.url, "--out", str(out[0])]) == 0
     assert main(["run", str(scene), "--backend", "rtl", "--lanes", "1", "--out", str(out[1])]) == 0
@@ -51,7 +51,7 @@ def test_a_scene_on_a_board_has_the_bits_of_the_simulated_circuit(service, tmp_p
 
 
 @pytest.mark.campaign
-def test_so_has_the_whole_rheological_scene(tmp_path, figure):
+def test_the_whole_rheological_scene_has_the_bits_of_the_simulated_circuit(tmp_path, figure):
     with served(Parameters(lanes=1, nodes=128, edges=256, materials=2, tables=1)) as service:
         board, rtl = runs(RHEOLOGICAL, service, tmp_path)
     assert set(board) == set(rtl) and len(board["x"]) > 30 and np.ptp(board["a"]) > 0.1
@@ -60,7 +60,7 @@ def test_so_has_the_whole_rheological_scene(tmp_path, figure):
     assert not differ
 
 
-def test_a_board_is_used_again_and_again_as_it_was_left(service, rng):
+def test_a_board_keeps_its_state_between_sessions(service, rng):
     for _ in range(3):
         image = random_image(rng, nodes=20, edges=40, materials=2, tables=1)
         model, board = NativeMachine(image), Board.at(service.url)
@@ -168,7 +168,7 @@ def test_a_cable_that_is_unplugged_leaves_nothing_half_written(tmp_path, capsys)
     assert not (out / "trajectory.npz").exists() and not (out / "summary.json").exists()
 
 
-def test_an_object_that_is_too_large_is_refused_with_what_would_do(service, tmp_path, capsys):
+def test_an_object_that_is_too_large_is_refused(service, tmp_path, capsys):
     text = scene_text.changed(scene_text.SCENE, "nodes = [3, 3]", "nodes = [9, 9]")
     text = scene_text.changed(text, "nodes = [4]", "nodes = [40]")
     scene = str(scene_text.written(tmp_path, text))

@@ -1,5 +1,5 @@
-"""A driver that is treated badly, against the whole circuit: whatever happens to the line, to the circuit or to the
-session, what is read is what was written, every failure has its type, and a new session always works."""
+"""The driver under stress, against the whole circuit: whatever happens to line, circuit or session, reads give what was
+written, every failure has its type, and a new session always works."""
 
 import numpy as np
 import pytest
@@ -18,9 +18,9 @@ from sim.backends.link.session import ATTEMPTS
 from sim.backends.native import NativeMachine
 
 TIMEOUT = 4e-3
-"""s of the circuit's time: more than a window of these commands and their answers takes."""
+"""Seconds of the circuit's time, more than a window of these commands and their answers takes."""
 LONGEST = 40 * ATTEMPTS * TIMEOUT
-"""s of the circuit's time in which all is done or has failed: loading an object takes 30 windows at most."""
+"""Seconds of the circuit's time within which a command is done or fails; loading an object takes at most 30 windows."""
 NODES = 20
 MAP = Map(SMALL)
 SPARE = [
@@ -30,7 +30,7 @@ WORDS = st.dictionaries(st.sampled_from(SPARE), st.integers(0, (1 << 36) - 1), m
 
 
 class Line(NoisyLine):
-    """A line of which both directions may be cut."""
+    """A line whose directions can each be cut."""
 
     cut = False
 
@@ -39,7 +39,7 @@ class Line(NoisyLine):
 
 
 class Driver(RuleBasedStateMachine):
-    """``memory`` is what must be there; a word of which a failed write may have been done is not in it."""
+    """``memory`` has the words that must be there, without those that a failed write may have changed."""
 
     @initialize(seed=st.integers(0, 1 << 32))
     def begin(self, seed):
@@ -50,7 +50,7 @@ class Driver(RuleBasedStateMachine):
         self.board = Board(self.line, TIMEOUT, self.line.clock)
 
     def attempt(self, action, *arguments):
-        """(whether it was done, what it gave); after a failure the next must begin a session."""
+        """Return (whether it was done, its result); after a failure the next command must begin a session."""
         began = self.line.clock()
         try:
             result = action(*arguments)
@@ -62,7 +62,7 @@ class Driver(RuleBasedStateMachine):
         return True, result
 
     def give_up(self):
-        """A port that is closed sends what it still has: more than a session's time, if it was said again and again."""
+        """A closed port still sends what it has, which lasts longer than a session if it was sent many times."""
         self.board, self.machine, until = None, None, self.line.clock() + LONGEST
         while not self.circuit.idle:
             assert self.line.clock() < until, "the circuit doesn't come to rest"
@@ -156,11 +156,11 @@ def fuzzed(examples: int, steps: int):
     )
 
 
-def test_whatever_happens_to_it_the_driver_ends_with_the_right_state_or_a_typed_error():
+def test_the_driver_ends_with_the_right_state_or_a_typed_error():
     fuzzed(4, 12)
 
 
 @pytest.mark.campaign
-def test_a_driver_that_is_fuzzed_for_long(figure):
+def test_a_long_fuzzing_campaign(figure):
     fuzzed(150, 40)
     figure("hangs, wrong states and errors without a type of a fuzzed driver, in 150 examples of 40 steps", 0, 0)

@@ -1,4 +1,4 @@
-"""Hands on an object that runs: whole steps only, new velocities from a step on, in as many bytes as it says."""
+"""Live access to an object that runs: values of whole steps, velocities from a step on, and the stated bytes."""
 
 import re
 from pathlib import Path
@@ -35,7 +35,7 @@ def loaded(tmp_path):
 
 
 class Named:
-    """All that is asked of a board before it is talked to."""
+    """The attributes of a board that are needed without a line."""
 
     parameters = SMALL
 
@@ -44,8 +44,8 @@ def driven(loaded):
     return np.flatnonzero(loaded.scene.phases[0].driven)
 
 
-def test_what_is_seen_is_of_one_step_and_a_velocity_is_taken_up(loaded):
-    """The integer model, given the same velocities after the same steps, goes through all that was seen."""
+def test_an_exchange_sees_one_step_and_sets_the_velocity(loaded):
+    """The integer model, with the same velocities after the same steps, has all the states that were seen."""
     nodes, model = driven(loaded), NativeMachine(loaded.image)
     rank = ranks(loaded.node_order)[nodes]
     with served() as service:
@@ -78,7 +78,7 @@ def test_what_is_seen_is_of_one_step_and_a_velocity_is_taken_up(loaded):
     assert done > 20
 
 
-def test_an_exchange_takes_the_bytes_it_says(loaded):
+def test_an_exchange_takes_the_stated_bytes(loaded):
     circuit, lengths = serial_circuit(), []
 
     class Line(NoisyLine):
@@ -116,7 +116,7 @@ def test_more_nodes_than_fit_are_refused(loaded):
         Live(board, loaded, np.zeros(0, int))
 
 
-def test_the_page_says_how_long_an_exchange_takes():
+def test_the_page_states_the_time_of_an_exchange():
     page = Path(__file__).parents[1].joinpath("docs", "link.md").read_text()
     (one, other) = (line_bytes(nodes, ITEMS) for nodes in (1, 9))
     text = re.sub(r"\s+", " ", page)

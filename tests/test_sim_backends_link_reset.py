@@ -1,4 +1,4 @@
-"""Resets anywhere: in a frame that comes, in an answer that goes out, in a run. The next session's commands work."""
+"""Resets at any time: within a received frame, an answer or a run. The next session's commands work."""
 
 import itertools
 from math import inf
@@ -11,9 +11,9 @@ from hw.map.memory_map import Map, Region
 from sim.backends.link.board import Board
 
 TIMEOUT = 2e-3
-"""s of the circuit's time: more than a window of these commands and their answers takes."""
+"""Seconds of the circuit's time, more than a window of these commands and their answers takes."""
 WITHIN = 60_000
-"""Cycles in one of which the reset comes: commands and answers go to and fro for as long."""
+"""Cycles within which the reset comes; commands and answers are on the line meanwhile."""
 
 
 class Reset(Exception):
@@ -21,7 +21,7 @@ class Reset(Exception):
 
 
 class Line(NoisyLine):
-    """Resets the circuit in the cycle ``at``, whatever is on the line, and says so."""
+    """Reset the circuit in cycle ``at``, whatever is on the line, and record it."""
 
     at = inf
 
@@ -36,7 +36,7 @@ class Line(NoisyLine):
 
 
 def resets(rng, count) -> int:
-    """After how many of so many resets the next commands didn't do what they should. Every third is in a run."""
+    """Return the number of resets after which the next commands failed. Every third reset is within a run."""
     circuit, failed = serial_circuit(), 0
     line, memory = Line(circuit, rng, 0), Map(SMALL)
     places = [memory.address(Region.NODE, name, place) for name in ("x_x", "v_y") for place in range(SMALL.nodes)]

@@ -1,4 +1,4 @@
-"""Accesses as segments: every word where it belongs, in order, in payloads that the device takes."""
+"""Accesses as segments: every word at its address, in order, in payloads that the circuit takes."""
 
 from integer_objects import random_image
 
@@ -13,7 +13,7 @@ ITEMS = Items.of_word(36)
 
 
 def heads(payload):
-    """(kind, [addresses], [words of a write]) of a payload's segments."""
+    """Return (kind, [addresses], [words to write]) of each of a payload's segments."""
     rest = ITEMS.split(payload)
     while rest:
         field, rest = HEAD.unpack(rest[0]), rest[1:]
@@ -32,7 +32,7 @@ def pairs(rng):
     return [*program.load(), *alone, *program.start(image.v, image.x)]
 
 
-def test_writes_come_out_as_they_went_in(rng):
+def test_writes_keep_addresses_words_and_order(rng):
     wanted, got = pairs(rng), []
     payloads = list(segments.writes(wanted, ITEMS))
     for payload in payloads:

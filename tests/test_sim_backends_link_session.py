@@ -18,13 +18,13 @@ def control(register):
     return Map(SMALL).address(Region.CONTROL, 0, register)
 
 
-# One refused write counts one, whoever did it; then the count is read
+# A refused write counts one; then the count is read
 REFUSED = ITEMS.head(Kind.WRITE, control(Control.MAGIC), 1) + ITEMS.pack(0)
 COUNTING = REFUSED + ITEMS.head(Kind.READ, control(Control.REFUSED), 1)
 
 
 def counted(rng, share, commands):
-    """(what each of so many commands counted, retries, damaged bytes)"""
+    """Return (the count that each command read, retries, damaged bytes)."""
     circuit = serial_circuit()
     line = NoisyLine(circuit, rng, share)
     session = Session(line, lambda identity: key(SMALL), TIMEOUT, attempts=1000, clock=line.clock)
@@ -53,7 +53,7 @@ def test_no_command_of_5000_is_lost_or_doubled(share, rng, figure):
 
 
 @pytest.mark.parametrize("error", [-0.02, 0.02])
-def test_a_host_whose_rate_is_two_per_cent_off_is_understood(error, rng):
+def test_a_rate_error_of_two_per_cent_is_tolerated(error, rng):
     circuit = serial_circuit(host_error=error)
     line = NoisyLine(circuit, rng, 0)
     session = Session(line, lambda identity: key(SMALL), 10 * TIMEOUT, clock=line.clock)
@@ -74,7 +74,7 @@ def test_a_host_with_another_rate_gets_no_answer(error, rng):
     circuit.close()
 
 
-def test_a_silent_line_is_given_up(rng):
+def test_a_silent_line_is_an_error(rng):
     class Dead:
         url = "nowhere"
 
@@ -93,8 +93,8 @@ def test_a_silent_line_is_given_up(rng):
         Session(Dead(), lambda identity: key(SMALL), timeout=0.01)
 
 
-def test_a_new_session_begins_where_an_old_one_was_broken_off(rng):
-    """In the middle of a frame, with answers still under way."""
+def test_a_new_session_begins_after_an_interrupted_one(rng):
+    """The old one ends within a frame, with answers still under way."""
     circuit = serial_circuit()
     line = NoisyLine(circuit, rng, 0)
     for _ in range(10):
