@@ -51,7 +51,7 @@ bench: environment ## time a step of the circuit and of software on this machine
 test: environment ## run the tests
 	@$(pytest) -m "not campaign"
 
-verify: environment ## run the tests and the long campaigns behind the published figures
+verify: environment ## run the tests and the long campaigns of the published figures
 	@$(pytest)
 
 lint: environment ## check the style of all Python files

@@ -21,7 +21,7 @@ def record_circuits(monkeypatch):
     return asked
 
 
-def said(capsys):
+def output(capsys):
     """Return the lines of standard output and of standard error."""
     captured = capsys.readouterr()
     return captured.out.splitlines(), captured.err.splitlines()
@@ -31,7 +31,7 @@ def refused(arguments, message, capsys):
     """Hold that a command ends with exit code 2 and this message alone."""
     capsys.readouterr()
     assert main(arguments) == 2
-    assert said(capsys) == ([], [f"error: {message}"])
+    assert output(capsys) == ([], [f"error: {message}"])
 
 
 def write_verilog(out, *options):

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from cli_objects import record_circuits, refused, said, write_verilog
+from cli_objects import output, record_circuits, refused, write_verilog
 
 from hw.emit import build
 
@@ -65,7 +65,7 @@ def test_an_impossible_option_is_one_line_of_error(options, emitted, out, capsys
 
 def test_progress_is_shown_only_on_a_terminal(emitted, out, capsys, monkeypatch):
     write_verilog(out)
-    assert said(capsys)[1] == []
+    assert output(capsys)[1] == []
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     write_verilog(out, "--lanes", "1")
     error = capsys.readouterr().err
@@ -79,7 +79,7 @@ def test_an_interruption_is_reported(monkeypatch, capsys, out):
 
     monkeypatch.setattr(build, "emit", interrupt)
     assert write_verilog(out) == 130
-    assert said(capsys) == ([], ["interrupted"])
+    assert output(capsys) == ([], ["interrupted"])
 
 
 def test_hw_runs_as_a_module():

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from cli_objects import SMALL, TEXT, record_circuits, refused, said, write_verilog
+from cli_objects import SMALL, TEXT, output, record_circuits, refused, write_verilog
 
 from golden.support import files
 from hw.__main__ import main
@@ -32,7 +32,7 @@ def test_writes_verilog_and_manifest(emitted, out, capsys):
     assert text == header + TEXT
     assert contents["files"][VERILOG]["sha256"] == manifest.digest(text)
     assert contents["sha256"] == manifest.own_digest(contents)
-    assert said(capsys) == ([f"{out / VERILOG}: {description}"], [])
+    assert output(capsys) == ([f"{out / VERILOG}: {description}"], [])
 
 
 def test_options_reach_the_circuit(emitted, out):
@@ -49,14 +49,14 @@ def test_the_family_appears_in_files_and_output(emitted, out, capsys):
     assert emitted[0].family == "ecp5"
     assert json.loads((out / MANIFEST).read_text())["parameters"]["family"] == "ecp5"
     assert "-bit states, for ecp5. Written by" in (out / VERILOG).read_text()
-    assert said(capsys)[0][-1].endswith("36-bit states, for ecp5")
+    assert output(capsys)[0][-1].endswith("36-bit states, for ecp5")
 
 
 def test_nothing_is_written_again_while_nothing_has_changed(emitted, out, capsys):
     write_verilog(out)
     before = {path: path.stat().st_mtime_ns for path in out.iterdir()}
     assert write_verilog(out) == 0
-    assert said(capsys)[0][-1].endswith("36-bit states (up to date)")
+    assert output(capsys)[0][-1].endswith("36-bit states (up to date)")
     assert len(emitted) == 1 and before == {path: path.stat().st_mtime_ns for path in out.iterdir()}
 
 

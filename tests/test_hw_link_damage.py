@@ -73,7 +73,7 @@ def damaged(r, seq):
     )
     while True:
         bad = bytes(r.choice(KINDS)(r, frame, other)) + b"\0"
-        counted = [told(part) for part in bad.split(b"\0") if part]
+        counted = [event_of(part) for part in bad.split(b"\0") if part]
         if "good_frames" not in counted:  # else a zero was lost or added, or two halves fit together
             return bad, counted
 
@@ -84,7 +84,7 @@ def answered(words: int) -> int:
     return cycles(work, ITEMS) + 3 * LOOK * (LEAST + ITEMS.bytes * work.items)
 
 
-def told(coded: bytes) -> str:
+def event_of(coded: bytes) -> str:
     """Return the event that the circuit has to count for the bytes between two zeros."""
     try:
         unpacked(coded, KEY)

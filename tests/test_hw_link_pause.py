@@ -1,7 +1,7 @@
 """A pause takes the cycles that it states, on a host port that answers as late as the real one."""
 
 import pytest
-from amaranth.sim import Simulator
+from hw_objects import simulate
 
 from hw.link.pause import PAUSE_CYCLES, RESUME_CYCLES, Pause
 from hw.link.port import LATENCY
@@ -45,16 +45,13 @@ async def note(ctx, dut, steps: int):
     await ctx.tick()
 
 
-def simulate(testbench):
+def run(testbench):
     dut = Pause(36)
 
-    async def run(ctx):
+    async def bench(ctx):
         await testbench(ctx, dut)
 
-    simulator = Simulator(dut)
-    simulator.add_clock(1e-6)
-    simulator.add_testbench(run)
-    simulator.run()
+    simulate(dut, bench)
 
 
 def test_a_pause_and_what_follows_take_the_stated_cycles():
@@ -64,7 +61,7 @@ def test_a_pause_and_what_follows_take_the_stated_cycles():
         assert await exchange(ctx, dut, dut.pause) == (PAUSE_CYCLES, pause)
         assert await exchange(ctx, dut, dut.resume) == (RESUME_CYCLES, [(control(Control.RUN), 10 - DONE)])
 
-    simulate(testbench)
+    run(testbench)
 
 
 @pytest.mark.parametrize("late", [1, 50])
@@ -77,7 +74,7 @@ def test_a_pause_waits_until_the_run_is_over(late):
         cycles, _ = await exchange(ctx, dut, dut.pause, answered + 1 + late)
         assert cycles == PAUSE_CYCLES + late
 
-    simulate(testbench)
+    run(testbench)
 
 
 @pytest.mark.parametrize("steps", [0, DONE])
@@ -87,4 +84,4 @@ def test_nothing_is_resumed_when_no_step_is_left(steps):
         await exchange(ctx, dut, dut.pause)
         assert await exchange(ctx, dut, dut.resume) == (1, [])
 
-    simulate(testbench)
+    run(testbench)

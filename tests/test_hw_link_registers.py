@@ -71,9 +71,9 @@ def test_a_malformed_greeting_begins_no_session():
 def test_a_segment_that_is_too_long_wraps_within_its_field():
     """After word 31 of index 5 comes its word 0, not word 0 of the next lane."""
     line = Line()
-    place = join(1, 30, 5, 0)
+    address = join(1, 30, 5, 0)
     _, wrote, got = line.exchange(
-        hello(), access(1, write(place, 11, 12, 13, across=True)), access(2, read(join(1, 0, 5, 0)))
+        hello(), access(1, write(address, 11, 12, 13, across=True)), access(2, read(join(1, 0, 5, 0)))
     )
     line.close()
     assert wrote.status == Status.REFUSED and ITEMS.split(got.payload) == [0, 13]

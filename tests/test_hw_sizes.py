@@ -1,4 +1,4 @@
-"""The sizes of a circuit stand in one table: another one there reaches everything that knows a circuit's sizes."""
+"""The sizes of a circuit are in one table: a new row reaches everything that knows the sizes."""
 
 import ast
 import re

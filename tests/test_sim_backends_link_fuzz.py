@@ -24,7 +24,7 @@ LONGEST = 40 * ATTEMPTS * TIMEOUT
 NODES = 20
 MAP = Map(SMALL)
 SPARE = [
-    MAP.address(Region.NODE, name, place) for name in ("x_x", "v_y", "load_z") for place in range(NODES, SMALL.nodes)
+    MAP.address(Region.NODE, name, node) for name in ("x_x", "v_y", "load_z") for node in range(NODES, SMALL.nodes)
 ]
 WORDS = st.dictionaries(st.sampled_from(SPARE), st.integers(0, (1 << 36) - 1), min_size=1)
 

@@ -39,14 +39,14 @@ def resets(rng, count) -> int:
     """Return the number of resets after which the next commands failed. Every third reset is within a run."""
     circuit, failed = serial_circuit(), 0
     line, memory = Line(circuit, rng, 0), Map(SMALL)
-    places = [memory.address(Region.NODE, name, place) for name in ("x_x", "v_y") for place in range(SMALL.nodes)]
+    addresses = [memory.address(Region.NODE, name, node) for name in ("x_x", "v_y") for node in range(SMALL.nodes)]
     control = {register: memory.address(Region.CONTROL, 0, register) for register in Control}
     run = [(control[Control.ROW_COUNT], 4), (control[Control.NODE_COUNT], 4), (control[Control.RUN], 1_000_000)]
     for number in range(count):
         board = Board(line, TIMEOUT, line.clock)
-        words = [int(word) for word in rng.integers(0, 1 << 36, len(places))]
-        board.write(zip(places, words, strict=True))
-        failed += board.read(places).tolist() != words
+        words = [int(word) for word in rng.integers(0, 1 << 36, len(addresses))]
+        board.write(zip(addresses, words, strict=True))
+        failed += board.read(addresses).tolist() != words
         line.at = circuit.clock + int(rng.integers(1, WITHIN))
         with pytest.raises(Reset):
             board.write(run * (number % 3 == 0))
@@ -54,9 +54,9 @@ def resets(rng, count) -> int:
                 if number % 3 == 0:
                     board.read(list(control.values()))
                 elif access % 2:
-                    board.write([(place, access) for place in places])
+                    board.write([(address, access) for address in addresses])
                 else:
-                    board.read(places)
+                    board.read(addresses)
     circuit.close()
     return failed
 

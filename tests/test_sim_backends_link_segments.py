@@ -63,6 +63,6 @@ def test_reads_and_checks_reach_every_address_in_order(rng):
 
 def test_a_long_run_is_cut_and_a_run_across_is_one_segment():
     assert list(segments.runs(range(600))) == [(0, 255, False), (255, 255, False), (510, 90, False)]
-    places = [3 + (word << 16) for word in range(6)]
-    assert list(segments.runs(places)) == [(3, 6, True)]
+    addresses = [3 + (word << 16) for word in range(6)]
+    assert list(segments.runs(addresses)) == [(3, 6, True)]
     assert list(segments.runs([])) == [] and not list(segments.writes([], ITEMS))

@@ -29,7 +29,7 @@ def lint(verilog: Path, *, top: str, waivers: Path | None = WAIVERS, family: str
     files = [str(path.resolve()) for path in (*excused, devices.models, verilog) if path]
     command = [str(program), "--lint-only", "-Wall", "--quiet", *files, "--top-module", top]
     done = subprocess.run(command, capture_output=True, text=True)
-    said = [line for line in done.stderr.splitlines() if line.startswith("%")]
-    if done.returncode and not said:
+    warnings = [line for line in done.stderr.splitlines() if line.startswith("%")]
+    if done.returncode and not warnings:
         raise RuntimeError(f"{program} failed: {done.stderr}")
-    return [line for line in said if not line.startswith("%Error: Exiting")]
+    return [line for line in warnings if not line.startswith("%Error: Exiting")]

@@ -29,7 +29,7 @@ def finish_cycles(items: Items) -> int:
 class AnswerWriter(wiring.Component):
     """Write an answer into a `hw.link.send.FrameSender`: items as they come, and on ``finish`` the rest.
 
-    The faults stand before all other items, and the header before the faults. Both are known last.
+    The faults go before all other items and the header before the faults, though both are known last.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class AnswerWriter(wiring.Component):
         m.submodules.writer = writer = ItemWriter(self._items)
         size = self._items.bytes
         payload = Signal.like(self.length)
-        told = Signal(range(len(self._identity) + 1))
+        given = Signal(range(len(self._identity) + 1))
         faults = Signal(self._state)
         own = Signal()
         item = Signal(8 * size)
@@ -109,13 +109,13 @@ class AnswerWriter(wiring.Component):
                     with m.If(self.greeting):
                         m.next = "identity"
             with m.State("identity"):
-                m.d.comb += [item.eq(identity[told]), own.eq(1)]
+                m.d.comb += [item.eq(identity[given]), own.eq(1)]
                 with m.If(writer.stream.ready):
-                    m.d.sync += told.eq(told + 1)
-                    with m.If(told == len(self._identity) - 1):
+                    m.d.sync += given.eq(given + 1)
+                    with m.If(given == len(self._identity) - 1):
                         m.next = "faults"
             with m.State("faults"):
-                m.d.sync += told.eq(0)
+                m.d.sync += given.eq(0)
                 with m.If(writer.stream.ready):
                     m.d.comb += self.ask_faults.eq(1)
                     m.next = "faults_asked"

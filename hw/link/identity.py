@@ -60,18 +60,18 @@ class Identity:
         """Return the identity of its items. Raises ValueError if their number is wrong or half a key is too long."""
         if len(items) != len(IDENTITY_TEXT):
             raise ValueError(f"items must be {len(IDENTITY_TEXT)}, not {len(items)}")
-        told = dict(zip(IDENTITY_TEXT, items, strict=True))
-        low, high = told.pop("key_low"), told.pop("key_high")
+        values = dict(zip(IDENTITY_TEXT, items, strict=True))
+        low, high = values.pop("key_low"), values.pop("key_high")
         if (most := max(low, high)) >> 8 * PART:
             raise ValueError(f"half a key must be below 2^{8 * PART}, not {most:#x}")
-        circuit = {name: told.pop(name) for name in CIRCUIT}
-        return cls(key=b"".join(part.to_bytes(PART, "little") for part in (low, high)), circuit=circuit, **told)
+        circuit = {name: values.pop(name) for name in CIRCUIT}
+        return cls(key=b"".join(part.to_bytes(PART, "little") for part in (low, high)), circuit=circuit, **values)
 
     @property
     def items(self) -> list[int]:
         key = (int.from_bytes(part, "little") for part in (self.key[:PART], self.key[PART:]))
-        told = self.magic, self.protocol, self.map_version, *key, *(self.circuit[name] for name in CIRCUIT)
-        return [*told, self.clock_hz, self.bit_cycles]
+        values = self.magic, self.protocol, self.map_version, *key, *(self.circuit[name] for name in CIRCUIT)
+        return [*values, self.clock_hz, self.bit_cycles]
 
     def parameters(self) -> Parameters:
         """Return the circuit's parameters, of the generic family. Raises ValueError if no circuit can have them."""

@@ -25,8 +25,7 @@ class ByteStream(Signature):
 
 
 class ItemStream(Signature):
-    """Items (`hw.link.items`) with a handshake: one is taken in each cycle in which ``valid`` and ``ready`` are both
-    1."""
+    """Items (`hw.link.items`) with the handshake of a `ByteStream`."""
 
     def __init__(self, bits: int):
         super().__init__({"valid": Out(1), "item": Out(bits), "ready": In(1)})

@@ -11,7 +11,7 @@ from hw.map.control import Control
 from hw.map.memory_map import ADDRESS, Region, join
 
 LATENCY = 1 + HOST_LATENCY + 1
-"""Cycles from a request to its answer: the circuit is large and may be far away, so there is a register each way."""
+"""Cycles from a request to its answer: the core may be placed far away, so there is a register each way."""
 
 
 class PortSwitch(wiring.Component):

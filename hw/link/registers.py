@@ -39,7 +39,7 @@ LINK_TEXT = {
     Link.LINE_ERRORS: "frames dropped: a byte had no stop bit, or a break came",
     Link.BREAKS: "breaks",
     Link.COBS_ERRORS: "frames dropped: not COBS",
-    Link.LENGTH_ERRORS: "frames dropped: not as long as they said",
+    Link.LENGTH_ERRORS: "frames dropped: not of the length in their header",
     Link.CRC_ERRORS: "frames dropped: wrong CRC",
     Link.OVERRUNS: "frames dropped: no room",
     Link.DUPLICATES: "commands that had been done before and were answered again",

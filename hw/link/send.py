@@ -26,7 +26,7 @@ QUEUE = len(("request", "waits"))
 
 
 def start_cycles(length: int) -> int:
-    """Return the cycles from ``send`` to a frame's first byte, after the CRC of an answer of so many bytes."""
+    """Return the cycles from ``send`` to a frame's first byte, for an answer of ``length`` bytes. The CRC is first."""
     return QUEUE + LOOK + FIRST_BYTE + (length - 1) * LOOK
 
 

@@ -50,11 +50,11 @@ class Linked(wiring.Component):
 
     def elaborate(self, platform):
         m, state = Module(), self._core.parameters.formats.state
-        # A reset register for each of the two: they are far from one another, and the reset has a large fan-out
-        core_reset, device_reset = near = [
+        # A reset register for each of the two: they may be placed far apart, and a reset has a large fan-out
+        core_reset, device_reset = resets = [
             Signal(name=f"{name}_reset", init=1, reset_less=True) for name in ("core", "device")
         ]
-        m.d.sync += Cat(near).eq(Cat(ResetSignal(), core_reset))
+        m.d.sync += Cat(resets).eq(Cat(ResetSignal(), core_reset))
         m.submodules.core = core = Placed(TOP, self._core.signature, reset=core_reset)
         m.submodules.device = device = Placed(DEVICE, members(state), reset=device_reset)
         m.submodules.receiver = receiver = Receiver(self._bit_cycles)

@@ -112,9 +112,9 @@ class Session:
             answer = self._answered(under_way)
             try:
                 self.items = Items(answer.item_bytes)
-                told = self.items.split(answer.payload)
-                if len(told) > 1 and told[1] == nonce and answer.status & 0xF == Status.DONE:
-                    return Identity.read(told[2:])
+                items = self.items.split(answer.payload)
+                if len(items) > 1 and items[1] == nonce and answer.status & 0xF == Status.DONE:
+                    return Identity.read(items[2:])
             except ValueError as error:
                 raise OtherCircuit(
                     f"--port must lead to a circuit of this version, but its identity has another form: {error}"
