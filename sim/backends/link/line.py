@@ -70,7 +70,11 @@ class SerialLine:
         return first + self._checked(self._port.read, 4096)
 
     def close(self) -> None:
+        """Close the port."""
+        socket = getattr(self._port, "_socket", None)
         self._port.close()
+        if socket:
+            socket.close()  # pyserial leaves it open if the other side is gone
 
     def _checked(self, call, argument):
         try:
