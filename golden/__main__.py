@@ -5,20 +5,14 @@ from __future__ import annotations
 import sys
 
 from golden.commands import mesh
-from golden.support.command import Parser, execute
+from golden.support.command import Parser, command_parser, execute
 
 COMMANDS = {"mesh": mesh}
 
 
 def parser() -> Parser:
     """Return the parser of all commands."""
-    main = Parser(prog="python -m golden", description="The specification one can run.")
-    commands = main.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, module in COMMANDS.items():
-        command = commands.add_parser(name, help=module.HELP)
-        module.add_options(command)
-        command.set_defaults(run=module.run)
-    return main
+    return command_parser("python -m golden", "The specification one can run.", COMMANDS)
 
 
 def main(arguments=None) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from golden.support.command import Parser, execute
+from golden.support.command import Parser, command_parser, execute
 from sim.commands import bench, compare, export, figures, report, run, serve
 
 COMMANDS = {
@@ -20,13 +20,7 @@ COMMANDS = {
 
 def parser() -> Parser:
     """Return the parser of all commands."""
-    main = Parser(prog="python -m sim", description="Run scenes on float64, on integers and on the simulated circuit.")
-    commands = main.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, module in COMMANDS.items():
-        command = commands.add_parser(name, help=module.HELP)
-        module.add_options(command)
-        command.set_defaults(run=module.run)
-    return main
+    return command_parser("python -m sim", "Run scenes on float64, on integers and on the simulated circuit.", COMMANDS)
 
 
 def main(arguments=None) -> int:

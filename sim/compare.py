@@ -15,7 +15,7 @@ from sim.results.result import Result
 from sim.run import run
 
 RANGES = "ranges"
-"""The last stage of a comparison, after the runs: looking at the ranges of the integers."""
+"""The last stage of a comparison, after the runs: measuring the ranges of the integers."""
 
 
 def compare(
@@ -34,7 +34,7 @@ def complete(
     updates: int = UPDATES,
     progress: Callable[[str, int], object] | None = None,
 ) -> Comparison:
-    """Run the scene on those of ``backends`` that ``runs`` lacks, and look at the ranges of the integers.
+    """Run the scene on each of ``backends`` that ``runs`` lacks, and measure the ranges of the integers.
 
     ``progress(backend, steps done)`` is called as by `sim.run.run`, and with `RANGES` after all runs.
     """

@@ -48,8 +48,8 @@ def run(
     Parameters
     ----------
     backend
-        The name of one in `sim.backends.registry.BACKENDS`, which takes those of the settings ``lanes``, ``updates``,
-        ``engine``, ``waves`` and ``link`` that it has; or a backend with its settings.
+        A name in `sim.backends.registry.BACKENDS`, which takes whichever of the settings ``lanes``, ``updates``,
+        ``engine``, ``waves`` and ``link`` it has; or a backend that has its settings already.
     lanes, updates
         Edge processors and node updaters of the simulated circuit.
     edge_order
@@ -81,7 +81,7 @@ def run(
         if not backend.integers:
             machine = stack.enter_context(backend.open(scene))
             return Result(backend.name, machine.simulate(progress), perf_counter() - began)
-        encoded = limits.encode(scene, edge_order)
+        encoded = limits.encode_checked(scene, edge_order)
         machine = stack.enter_context(backend.open(encoded))
         frames = _frames(encoded, backend, machine, progress)
         counted = {}
@@ -100,12 +100,12 @@ def run(
 
 
 def _configured(name: str, **settings) -> Backend:
-    """Return the backend of a name, with those of the settings that it has; None, a setting's absence, fits any."""
+    """Return the backend called ``name`` with whichever of the settings it has; a setting that is None isn't given."""
     if name not in BACKENDS:
         raise InputError(f"backend must be one of {', '.join(BACKENDS)}, not {name!r}")
     kind = BACKENDS[name]
     own = kind.settings()
-    for setting in ("waves", "link"):  # the others have a default value, which is no wish
+    for setting in ("waves", "link"):  # the others have defaults, so their presence asks for nothing
         if settings[setting] is not None and setting not in own:
             raise InputError(f"{setting} must go with the backend {owners(setting)}, not {name}")
     return kind(**{setting: value for setting, value in settings.items() if setting in own})

@@ -24,10 +24,10 @@ def damper_tables(rng, fmt: Formats, tables: int) -> dict[str, np.ndarray]:
 
 
 def batch(rng, graph, fmt: Formats, damper, velocity_shift: int, n: int) -> dict[str, np.ndarray]:
-    """Inputs of n edges by name, each (n,) int64: half of them sensible, a quarter anything, a sixteenth of powers of
-    two and their neighbours, so that results fall on the limits of formats; the rest corners of each format.
+    """Return inputs of n edges by name, each (n,) int64: half of them sensible, a quarter anything, a sixteenth powers
+    of two and their neighbours, so that results fall on the limits of formats; the rest corners of each format.
 
-    A sixteenth of the edges each then gets its thresholds, its place in the table and its length to lie exactly on
+    A sixteenth of the edges each then gets its thresholds, its position in the table and its length to lie exactly on
     the boundary between two branches or one step beside it.
     """
     tables = len(damper["rho_value"])
@@ -136,7 +136,7 @@ def sensible(rng, formats, fmt, n):
 
 
 def raw(x, q: Q):
-    return np.clip(np.floor(np.ldexp(x, q.frac_bits) + 0.5), q.raw_min, q.raw_max).astype(np.int64)
+    return q.quantise(x, saturate=True)
 
 
 def coincide(rng, inputs, fmt, rows):
@@ -148,8 +148,8 @@ def coincide(rng, inputs, fmt, rows):
 
 
 def on_limits(rng, inputs, model, fmt, rows):
-    """Shifts that add up to nearly nothing: products at the ends of their formats, and the first shift that is not on
-    offer."""
+    """Choose shifts that nearly cancel: products then lie at the ends of their formats, and some shifts are the first
+    that the datapath can't do."""
     spring, relaxed, _ = np.array_split(rows, [len(rows) // 4, len(rows) // 2])
     shifts = model(rows)
     for name, shift in (("k", "stretch_shift"), ("c", "w_shift")):
@@ -182,7 +182,7 @@ def beside(rng, values):
 def on_boundaries(rng, inputs, model, fmt, rows):
     """Put |g| exactly at a threshold or at the end of a segment, or one step beside it."""
     model, fineness = model(rows), inputs["material_fineness"][rows]
-    first, second, place = np.split(np.arange(len(rows)), [len(rows) // 3, 2 * len(rows) // 3])
+    first, second, third = np.split(np.arange(len(rows)), [len(rows) // 3, 2 * len(rows) // 3])
 
     at = np.clip(beside(rng, model["size"]), fmt.threshold.raw_min, fmt.threshold.raw_max)
     inputs["material_g1"][rows[first]] = at[first]
@@ -193,6 +193,6 @@ def on_boundaries(rng, inputs, model, fmt, rows):
     octaves = (model["octave_fraction"] >> fmt.octave_fraction.width - finest) - (model["g_shift"] << finest)
     segment = rng.choice([0, 1, 2, 255, 256, 511, 512], len(rows)) << finest - fineness
     start = np.clip(beside(rng, octaves - segment), fmt.octave.raw_min, fmt.octave.raw_max)
-    inputs["material_first_octave"][rows[place]] = start[place]
-    inputs["material_g1"][rows[place]] = 0  # so that the table is what is taken
-    inputs["material_g2"][rows[place]] = fmt.threshold.raw_max
+    inputs["material_first_octave"][rows[third]] = start[third]
+    inputs["material_g1"][rows[third]] = 0  # so that the table is used
+    inputs["material_g2"][rows[third]] = fmt.threshold.raw_max

@@ -62,7 +62,7 @@ def test_the_figures_agree_with_the_mesh(capsys):
     assert list(found["boards"]) == BOARDS and all(board["fits"] for board in found["boards"].values())
 
 
-def test_the_report_as_text(capsys):
+def test_the_report_is_readable_as_text(capsys):
     out = said(RING, capsys).splitlines()
     ring = mesh.filled("ring", outer=0.05, inner=0.03, edge=0.01)
     assert out[0] == (f"ring: {len(ring.points)} nodes, {len(ring.edges)} edges, {len(ring.cells)} triangles, one part")
@@ -212,7 +212,7 @@ GIVEN = "must not be given with a"
         ),
     ],
 )
-def test_mistakes(arguments, message, tmp_path, monkeypatch, capsys):
+def test_mistakes_in_the_arguments_are_one_line(arguments, message, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     refused(arguments, message, capsys)
     assert not list(tmp_path.iterdir())
@@ -257,6 +257,6 @@ def test_a_status_line_is_shown_meanwhile(monkeypatch, capsys):
     assert err == "ring ...\r        \r" and out.startswith("ring: ")
 
 
-def test_the_command_itself():
+def test_the_command_itself_runs():
     done = subprocess.run([sys.executable, "-m", "golden", "mesh", *RING], cwd=ROOT, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "") and done.stdout.startswith("ring: ")

@@ -55,7 +55,7 @@ def test_box_fills_its_volume_with_matching_faces(tetrahedra, edges):
 
 
 @pytest.mark.parametrize("tetrahedra", [5, 6])
-def test_box_of_one_cell(tetrahedra):
+def test_a_box_of_one_cell_has_its_edges(tetrahedra):
     grid = mesh.box((2, 2, 2), (1.0, 1.0, 1.0), tetrahedra)
     assert len(grid.edges) == 12 + 6 + (tetrahedra == 6)
 

@@ -18,7 +18,7 @@ def test_equal_sides_are_1(cell):
     assert radius_ratio(cell[:, [1, 0, *range(2, cell.shape[1])]]) == pytest.approx(-1, rel=1e-12)
 
 
-def test_right_angles():
+def test_right_angles_have_their_known_ratios():
     """3-4-5: r = 1, R = 5/2; the corner of a cube: r = 1 / (3 + sqrt 3), R = sqrt(3) / 2."""
     assert radius_ratio(np.array([[[0, 0], [4, 0], [0, 3]]])) == pytest.approx(2 * 1 / 2.5, rel=1e-12)
     assert radius_ratio(CORNER) == pytest.approx(3 / (3 + sqrt(3)) / (sqrt(3) / 2), rel=1e-12)

@@ -40,7 +40,7 @@ def test_integers_are_numbers_too(number):
         assert np.array_equal((x < number).raw, x.to_float() < number)
 
 
-def test_comparison_magnitude_and_choice():
+def test_comparison_magnitude_and_choice_are_exact():
     for a, b in itertools.product(FORMATS, FORMATS):
         x, y = every_pair(a, b)
         less = x < y

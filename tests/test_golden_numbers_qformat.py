@@ -3,12 +3,13 @@
 import itertools
 import operator
 from fractions import Fraction
+from math import floor
 
 import numpy as np
 import pytest
 from small_formats import every_pair, outside, small_formats
 
-from golden.numbers.qformat import BIT, Q, count, smallest, unsigned
+from golden.numbers.qformat import BIT, Q, count, round_half_up, smallest, unsigned
 
 FORMATS = small_formats(range(1, 5), range(-1, 4))
 OPERATORS = operator.add, operator.sub, operator.mul
@@ -75,7 +76,7 @@ def test_a_union_holds_both_and_nothing_smaller_does():
             assert not holds(Q(both.int_bits - 1, both.frac_bits, both.signed), values)
 
 
-def test_magnitude_and_scale():
+def test_magnitude_and_scale_give_their_formats():
     for q in FORMATS:
         low, high = extremes(q)
         assert holds(abs(q), [abs(low), abs(high)]) and not abs(q).signed
@@ -135,3 +136,13 @@ def test_bits_are_the_integer_they_stand_for(q):
     for raw in range(q.raw_min, q.raw_max + 1):
         for above in (0, 1, 5):
             assert q.from_bits((raw & (1 << q.width) - 1) | above << q.width) == raw
+
+
+@pytest.mark.parametrize("drop", range(5))
+def test_integers_are_rounded_half_up(drop):
+    raw = np.arange(-40, 41)
+    expected = [floor(Fraction(int(x), 1 << drop) + Fraction(1, 2)) for x in raw]
+    assert round_half_up(raw, drop).tolist() == [round_half_up(int(x), drop) for x in raw] == expected
+    widest = 2**62 - 1
+    for end in (widest, -widest - 1):
+        assert int(round_half_up(np.int64(end), drop)) == round_half_up(end, drop)

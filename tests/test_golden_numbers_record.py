@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from amaranth.hdl import Module, Signal
 from amaranth.sim import Simulator
+from integer_objects import random_raw
 
 from golden.numbers.qformat import BIT, Q, unsigned
 from golden.numbers.record import Record
-from tests.integer_objects import random_raw
 
 RECORD = Record({"index": unsigned(5, 0), "shift": Q(4, 0), "valid": BIT, "ratio": Q(2, 10)})
 LARGEST = {name: fmt.raw_max for name, fmt in RECORD.items()}

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from golden_objects import bottom, press_hold_release, scene, top
 
 from golden.mesh import mesh
 from golden.physics import stability
 from golden.physics.materials import plastic, plastic_force, rheological, rheological_force, viscoelastic
 from golden.physics.model import simulate
-from tests.golden_objects import bottom, press_hold_release, scene, top
 
 SIDE = 0.1  # m
 MATERIALS = {
@@ -31,7 +31,7 @@ def heights(grid, run):
 
 
 @pytest.mark.parametrize("name", MATERIALS)
-def test_figure_1_recovery_of_a_block(name):
+def test_a_block_recovers_as_in_figure_1(name):
     grid, depth = mesh.rectangle((5, 5), (SIDE, SIDE)), 0.2 * SIDE
     run = pressed(grid, MATERIALS[name], depth, hold=0.2, release=0.8)
     initial, _, deformed, stationary = heights(grid, run)
@@ -49,7 +49,7 @@ def test_figure_1_recovery_of_a_block(name):
 
 @pytest.mark.parametrize("tetrahedra", [5, 6])
 @pytest.mark.parametrize("name", MATERIALS)
-def test_figure_6_pressing_the_top_makes_the_sides_bulge(name, tetrahedra):
+def test_pressing_the_top_makes_the_sides_bulge_as_in_figure_6(name, tetrahedra):
     grid = mesh.box((4, 4, 5), (SIDE / 2, SIDE / 2, SIDE), tetrahedra)
     run = pressed(grid, MATERIALS[name], 0.1 * SIDE, hold=0.02, release=2.5e-4)
     for axis in (0, 1):
@@ -82,7 +82,7 @@ def under_gravity(material, dt, time=0.12):
     ],
     ids=["rheological", "plastic"],
 )
-def test_section_6_gravity(linear, force_dependent, dt):
+def test_a_block_holds_under_gravity_only_with_a_force_dependent_damper(linear, force_dependent, dt):
     """A linear damper lets the block collapse; one as soft at large forces, stiff at small ones, does not."""
     assert under_gravity(linear, 5e-4) > 0.3
     assert under_gravity(force_dependent, dt) < 0.05

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from golden_objects import phase, scene
 from scipy.integrate import solve_ivp
 from scipy.spatial import Delaunay
 
 from golden.mesh import mesh
 from golden.physics.materials import rheological, rheological_force
 from golden.physics.model import Model
-from tests.golden_objects import phase, scene
 
 DIM = 2
 

@@ -131,7 +131,7 @@ def test_without_c1_the_damper_carries_the_trial_force():
     np.testing.assert_allclose(1 / sigma, damper.c2(g), rtol=1e-14)
 
 
-def test_trial_forces_of_any_shape():
+def test_trial_forces_may_have_any_shape():
     damper, g = Exponential(f1=0.5, f2=2.0, c_max=8, c_min=1), np.array([[0.1, 1.5], [3.0, -90.0]])
     rho, sigma = damper.rho_sigma(1.0, g)
     assert sigma.shape == rho.shape == (2, 2)

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from golden_objects import phase, scene
 
 from golden.mesh import mesh
 from golden.physics.dampers import Linear
 from golden.physics.materials import Material, plastic, rheological, rheological_force, viscoelastic
 from golden.physics.model import Model, simulate
-from tests.golden_objects import phase, scene
 
 EPS = np.finfo(float).eps
 FORCE = rheological_force("loaf", 20.0, 0.3, f1=0.02, f2=0.2, c_max=3.0, c_min=0.3)

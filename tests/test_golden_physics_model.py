@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from golden_objects import bottom, line, phase, press_hold_release, scene, top
 
 from golden.mesh import mesh
 from golden.physics.materials import rheological, viscoelastic
 from golden.physics.model import Model, simulate
 from golden.support.errors import InputError
-from tests.golden_objects import bottom, line, phase, press_hold_release, scene, top
 
 GUM = viscoelastic("gum", 50.0, 1.0)
 GRID = mesh.rectangle((3, 3), (1.0, 1.0))

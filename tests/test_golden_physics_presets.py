@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from golden_objects import press_hold_release, scene
 
 from golden.mesh import mesh
 from golden.physics.dampers import Linear
 from golden.physics.materials import Material, plastic, plastic_force, rheological, rheological_force, viscoelastic
 from golden.physics.model import simulate
-from tests.golden_objects import press_hold_release, scene
 
 BLOCK = mesh.rectangle((4, 4), (1.0, 1.0))
 inf = math.inf

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from golden_objects import line, phase, scene
 
 from golden.physics.dampers import Linear
 from golden.physics.materials import Material, plastic, plastic_force, rheological, rheological_force, viscoelastic
 from golden.physics.model import Model, simulate
-from tests.golden_objects import line, phase, scene
 
 FORCE = dict(f1=0.5, f2=2.0, c_max=30.0, c_min=1.0)
 L0, DEPTH = 1.0, 0.2

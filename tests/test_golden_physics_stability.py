@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from golden_objects import bottom, line, phase, press_hold_release, scene, top
 from scipy.spatial import Delaunay
 
 from golden.mesh import mesh
@@ -13,7 +14,6 @@ from golden.physics.dampers import Linear
 from golden.physics.materials import Material, plastic, plastic_force, rheological, rheological_force, viscoelastic
 from golden.physics.model import Model, simulate
 from golden.support.errors import InputError
-from tests.golden_objects import bottom, line, phase, press_hold_release, scene, top
 
 SIDE = 0.1  # m
 MARGIN = stability.HALF_DISC * stability.TURNING
@@ -153,7 +153,7 @@ def test_a_soft_damper_counts_with_the_slope_of_its_law():
     assert reason == "stiffness"
 
 
-def test_scaling():
+def test_the_largest_step_scales_with_masses_and_coefficients():
     """dt goes like mass / c where damping limits, and like the root of mass / k where stiffness does."""
     for material, power in ((lambda s: plastic("m", s), 1), (lambda s: viscoelastic("m", s, 0.0), 0.5)):
         base = stability.largest_dt(at_rest(CUBE, material(2.0)))[0]

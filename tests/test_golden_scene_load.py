@@ -24,7 +24,7 @@ def test_everything_is_resolved(tmp_path):
     assert not hold.held.any() and not hold.load.any() and not hold.velocity.any()
 
 
-def test_defaults(tmp_path):
+def test_what_is_left_out_has_a_default(tmp_path):
     text = changed(
         changed(changed(SCENE, 'name = "block"\n', ""), "gravity = [0, -9.81]\n", ""), "frames = { every = 30 }\n", ""
     )
@@ -87,7 +87,7 @@ def test_mesh_file_lies_beside_the_scene(tmp_path):
     np.testing.assert_allclose(scene.mesh.points, points * 1e-3, rtol=1e-15)
 
 
-def test_material_by_element_and_first_on_shared_edges(tmp_path):
+def test_a_shared_edge_has_the_first_material_of_its_elements(tmp_path):
     both = load(written(tmp_path, changed(SCENE, GEL, TWO)))
     assert [material.name for material in both.materials] == ["gel", "clay"] and both.force_dependent
     ends = both.mesh.points[both.mesh.edges][:, :, 0]
@@ -98,7 +98,7 @@ def test_material_by_element_and_first_on_shared_edges(tmp_path):
     np.testing.assert_array_equal(swapped.edge_material, ends.min(axis=1) < 0.1 - 1e-9)  # the seam is clay
 
 
-def test_irregular_meshes_by_kind(tmp_path):
+def test_irregular_meshes_are_made_by_kind(tmp_path):
     text = changed(SCENE, MESH, 'mesh = { kind = "ring", outer = 0.05, inner = 0.03, edge = 0.01, seed = 3 }')
     scene = load(written(tmp_path, text[: text.index("[[phases]]")] + "[[phases]]\nduration = 0.01\n"))
     ring = mesh.filled("ring", outer=0.05, inner=0.03, edge=0.01, seed=3)
@@ -116,7 +116,7 @@ def test_one_material_has_what_the_others_leave(tmp_path):
         np.testing.assert_array_equal(rest.edge_material, both.edge_material)
 
 
-def test_material_by_list_of_nodes(tmp_path):
+def test_a_list_of_nodes_selects_the_elements_within_it(tmp_path):
     """An element belongs to a list of nodes if all of its nodes are listed."""
     left, right = "[0, 1, 3, 4, 6, 7]", "[1, 2, 4, 5, 7, 8]"
     text = changed(
@@ -139,6 +139,6 @@ def test_material_by_list_of_nodes(tmp_path):
         "{ nodes = [2, 0, 1, 1] }",
     ],
 )
-def test_regions_that_select_the_same(tmp_path, region):
+def test_different_regions_select_the_same_nodes(tmp_path, region):
     scene = load(written(tmp_path, changed(SCENE, BOTTOM, region)))
     np.testing.assert_array_equal(np.flatnonzero(scene.phases[0].fixed), [0, 1, 2])

@@ -47,11 +47,11 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("old, new, message", REFUSED)
-def test_refusals(tmp_path, old, new, message):
+def test_what_a_scene_must_not_say_is_refused(tmp_path, old, new, message):
     assert refusal(written(tmp_path, changed(SCENE, old, new))) == message
 
 
-def test_dt_above_the_stability_bound(tmp_path):
+def test_a_dt_above_the_stability_bound_is_refused(tmp_path):
     stiff = changed(SCENE, "k = 100.0", "k = 1e8")
     message = refusal(written(tmp_path, stiff))
     assert message.startswith("dt must be at most ") and "not 0.0001" in message and "'gel'" in message
@@ -71,14 +71,14 @@ def test_dt_above_the_stability_bound(tmp_path):
         ),
     ],
 )
-def test_files_that_are_not_scenes(tmp_path, content, message):
+def test_files_that_are_not_scenes_are_refused(tmp_path, content, message):
     path = tmp_path / "scene.toml"
     if content is not None:
         path.write_bytes(content)
     assert refusal(path) == message
 
 
-def test_folder(tmp_path):
+def test_a_folder_is_refused(tmp_path):
     assert refusal(tmp_path) == "the scene must be a readable file: Is a directory"
 
 

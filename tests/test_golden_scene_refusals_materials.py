@@ -71,5 +71,5 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("old, new, message", REFUSED)
-def test_refusals(tmp_path, old, new, message):
+def test_wrong_materials_are_refused(tmp_path, old, new, message):
     assert refusal(written(tmp_path, changed(SCENE, old, new))) == message

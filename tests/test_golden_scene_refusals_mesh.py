@@ -56,7 +56,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("old, new, message", REFUSED)
-def test_refusals(tmp_path, old, new, message):
+def test_wrong_meshes_and_masses_are_refused(tmp_path, old, new, message):
     assert refusal(written(tmp_path, changed(SCENE, old, new))) == message
 
 
@@ -92,12 +92,12 @@ SQUARE = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
         ),
     ],
 )
-def test_invalid_mesh_files(tmp_path, points, cells, message):
+def test_invalid_mesh_files_are_refused(tmp_path, points, cells, message):
     text = changed(SCENE, MESH, part(tmp_path, points, cells))
     assert refusal(written(tmp_path, text)) == message
 
 
-def test_missing_mesh_file(tmp_path):
+def test_a_missing_mesh_file_is_refused(tmp_path):
     text = changed(SCENE, MESH, 'mesh = { kind = "file", file = "part.vtk" }')
     assert refusal(written(tmp_path, text)) == f"mesh.file must be an existing mesh file, not {tmp_path / 'part.vtk'}"
 

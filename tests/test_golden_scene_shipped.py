@@ -37,7 +37,7 @@ def test_these_scenes_are_shipped():
 
 
 @each(SCENES)
-def test_cost_and_margin(name):
+def test_a_shipped_scene_is_small_and_within_its_stable_step(name):
     """Simulating a circuit takes long: scenes have few steps, and dt yet keeps a margin to its bound."""
     scene = load(SCENES[name])
     nodes, fewest, most = {2: (9**2, 1500, 4000), 3: (5**3, 1000, 2000)}[scene.dim]
@@ -60,7 +60,7 @@ def bounce_back(scene, trajectory, ends):
 
 
 @each(PRESSED)
-def test_press_hold_release(name):
+def test_each_material_keeps_the_part_of_a_press_that_it_should(name):
     depth, back = bounce_back(*run(name))
     assert 0.2 <= depth <= 0.3
     if name.startswith("viscoelastic"):
@@ -89,7 +89,7 @@ def test_the_last_shape_is_stationary(name):
 
 
 @each(["viscoelastic-3d", "plastic-3d", "rheological-3d"])
-def test_sides_bulge(name):
+def test_the_sides_of_a_pressed_solid_bulge(name):
     """Figure 6: pressing the top pushes the middle of all four sides outwards."""
     scene, trajectory, ends = run(name)
     initial, pressed = scene.mesh.points, trajectory.x[ends[0]]
@@ -123,7 +123,7 @@ def edge_forces(model, x, v, a):
     return np.abs(model.along(x, v, a)[1])
 
 
-def test_gravity():
+def test_the_force_dependent_block_holds_where_the_linear_one_collapses():
     """Section 6: the same block collapses with a linear damper and stands with the force-dependent one."""
     (soft, fallen, _), (hard, standing, _) = map(run, GRAVITY)
     np.testing.assert_array_equal(soft.mesh.points, hard.mesh.points)
@@ -161,7 +161,7 @@ def test_irregular_objects_come_to_rest_and_fit(name):
         assert not board.shortfall(scene.mesh)
 
 
-def test_ring():
+def test_the_ring_is_flattened_and_comes_back_in_part():
     """Pressed by a fifth, it becomes an oval, wider by nearly as much, with a flatter hole; it recovers in part."""
     scene, trajectory, ends = run("ring")
     start, pressed, _, let_go = ends_of("ring")
@@ -176,7 +176,7 @@ def test_ring():
     assert 0.25 < (let_go - pressed) / (start - pressed) < 0.6
 
 
-def test_ball():
+def test_the_ball_is_flattened_and_comes_back_in_part():
     """It keeps more than half of the dents, and its edges went through all of equation (7)."""
     start, pressed, _, let_go = ends_of("ball")
     assert 0.25 < (let_go - pressed) / (start - pressed) < 0.5
@@ -190,7 +190,7 @@ def test_ball():
     assert np.mean(force[-1] < clay.damper.f1) > 0.9
 
 
-def test_bun():
+def test_the_skin_of_the_bun_is_pressed_and_its_filling_flows():
     """The skin brings it back and the filling slows it: filling alone stays deformed, skin alone is back sooner."""
     scene, trajectory, ends = run("bun")
     start, pressed, _, let_go = ends_of("bun")

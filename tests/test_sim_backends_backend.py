@@ -1,6 +1,7 @@
 """sim.backends: a backend is one object, and every machine has the same interface."""
 
 import ast
+import inspect
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,11 +16,11 @@ from golden.support.errors import InputError
 from hw.parameters import Parameters
 from sim.__main__ import main, parser
 from sim.backends.backend import Backend, IntegerBackend, Option
-from sim.backends.circuit import CircuitMachine
+from sim.backends.circuit import Circuit, CircuitMachine
 from sim.backends.fixed import FixedBackend
 from sim.backends.float64 import Float64Machine, FloatBackend
 from sim.backends.link.board import Board
-from sim.backends.machine import ClockedMachine, Machine
+from sim.backends.machine import ClockedMachine, FloatMachine, Machine
 from sim.backends.native import NativeMachine
 from sim.backends.registry import BACKENDS
 from sim.backends.rtl import RtlBackend
@@ -146,7 +147,7 @@ def test_a_backend_says_what_it_is(backend):
 
 
 def test_machines_have_one_interface():
-    """The board's machine is a `CircuitMachine` too; what is behind it are registers."""
+    """The board's machine is a `CircuitMachine` too; here registers stand in for the circuit."""
     image, parameters = encode(block(steps=(5, 5, 5))).image, Parameters(lanes=2)
     circuit = CircuitMachine(image, Registers(parameters))
     for machine in (NumpyMachine(image), NativeMachine(image), circuit):
@@ -157,9 +158,31 @@ def test_machines_have_one_interface():
     circuit.step(3)
     assert circuit.cycles == 0 and circuit.parameters is parameters
     assert not isinstance(object(), Machine)
-    for circuit_class in (SimulatedCircuit, Board):
-        for method in ("write", "read", "run", "wait", "close"):
-            assert callable(vars(circuit_class)[method])
+    assert isinstance(Float64Machine(block()), FloatMachine) and not isinstance(object(), FloatMachine)
+
+
+def parameters_of(kind, method) -> list[str]:
+    return list(inspect.signature(getattr(kind, method)).parameters)
+
+
+@pytest.mark.parametrize(
+    ("protocol", "kinds", "methods"),
+    [
+        (Machine, (NumpyMachine, NativeMachine, CircuitMachine), {"step", "restart", "take"}),
+        (FloatMachine, (Float64Machine,), {"simulate"}),
+    ],
+)
+def test_methods_take_the_arguments_of_their_protocol(protocol, kinds, methods):
+    assert methods == {name for name, member in vars(protocol).items() if callable(member) and name[0] != "_"}
+    for kind in kinds:
+        for method in methods:
+            assert parameters_of(kind, method) == parameters_of(protocol, method), kind
+
+
+@pytest.mark.parametrize("kind", [SimulatedCircuit, Board])
+def test_the_methods_of_a_circuit_take_the_arguments_of_its_protocol(kind):
+    for method in ("write", "read", "run", "wait", "close"):
+        assert parameters_of(kind, method) == parameters_of(Circuit, method), method
 
 
 class Registers:

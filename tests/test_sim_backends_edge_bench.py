@@ -95,7 +95,7 @@ class Run:
                     "too short": m["degenerate"] == 1,
                     "a segment's edge": table & (m["table_position"] % (1 << FORMATS.damper_fraction.width) == 0),
                     "before the table": table & (m["table_position"] < 0),
-                    "beyond the table": table & (m["table_position"] >= end),
+                    "after the table": table & (m["table_position"] >= end),
                     "first segment": table & (m["table_position"] == m["table_position"] % end) & (m["segment"] == 0),
                     "last segment": table & (m["table_position"] == m["table_position"] % end) & (m["segment"] == 511),
                     "shift of 0 for f": m["f_shift"] == 0,

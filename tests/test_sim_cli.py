@@ -119,7 +119,7 @@ def test_saturation_in_a_run_exits_1(tmp_path, capsys):
     assert faults and err == [f"error: saturated: {', '.join(sorted(faults))}"]
 
 
-def test_compare(circuit, scene, tmp_path, capsys, monkeypatch):
+def test_compare_writes_a_page_and_prints_a_table(circuit, scene, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(batch, "cores", lambda: 1)  # the stand-in for the circuit is not in other processes
     second = tmp_path / "second.toml"
     second.write_text(changed(QUICK, '"block"', '"other"'))
@@ -150,7 +150,7 @@ def test_json_prints_the_file_itself(command, file, circuit, scene, tmp_path, ca
     assert capsys.readouterr() == ((tmp_path / "out" / file).read_text(), "")
 
 
-def test_report(circuit, scene, tmp_path, capsys, monkeypatch):
+def test_report_writes_the_page_of_existing_runs(circuit, scene, tmp_path, capsys, monkeypatch):
     """The page of existing runs is that of a comparison, except for the time it took."""
     monkeypatch.setattr(batch, "cores", lambda: 1)
     runs, pages = [], {}
@@ -244,7 +244,7 @@ def test_an_interrupt_is_quiet(scene, tmp_path, capsys, monkeypatch):
     assert lines(capsys) == ([], ["interrupted"])
 
 
-def test_the_command_itself(scene, tmp_path):
+def test_the_command_itself_runs(scene, tmp_path):
     """Once through the interpreter, with real exit codes and streams."""
 
     def command(*arguments):

@@ -71,7 +71,7 @@ HELP = "(see python -m sim run --help)"
         (["report"], "the following arguments are required: RUN (see python -m sim report --help)"),
     ],
 )
-def test_mistakes_in_the_arguments(arguments, message, capsys, monkeypatch, tmp_path):
+def test_mistakes_in_the_arguments_are_one_line(arguments, message, capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     refused(arguments, message, capsys)
     assert not Path("o").exists()

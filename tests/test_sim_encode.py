@@ -255,15 +255,15 @@ def pressed(material=SPRING, mass=0.01, load=(0.0, 0.0), velocity=(0.0, -0.1), s
         ),
     ],
 )
-def test_refusals(arguments, message):
+def test_numbers_that_the_circuit_cannot_hold_are_refused(arguments, message):
     with np.errstate(over="ignore"), pytest.raises(InputError) as caught:
-        limits.encode(pressed(**arguments))
+        limits.encode_checked(pressed(**arguments))
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
 
 
 def test_a_scene_within_the_limits_is_loaded_at_its_start():
     scene = mixed()
-    tried, loaded = limits.encode(scene).image, encode(scene).image
+    tried, loaded = limits.encode_checked(scene).image, encode(scene).image
     for name in ("x", "v", "load", "edges", "length", "ratio"):
         assert (getattr(tried, name) == getattr(loaded, name)).all()
     assert all((tried.inverse_mass[name] == loaded.inverse_mass[name]).all() for name in ("value", "shift"))

@@ -23,7 +23,7 @@ OBJECTS = {
 
 
 @pytest.mark.parametrize("name", OBJECTS)
-def test_order(name, rng):
+def test_an_order_is_a_permutation_that_keeps_neighbours_close(name, rng):
     """Both are permutations; edges go by their higher node, then the lower; no sweep has a shorter reach."""
     points, edges = OBJECTS[name]()
     n, shuffle = len(points), rng.permutation(len(points))
@@ -47,7 +47,7 @@ def test_a_sweep_along_the_grid_touches_two_of_its_lines():
     assert reach(ranks(node_order)[edges[edge_order]]) == 28
 
 
-def test_reach():
+def test_the_reach_is_the_longest_distance_between_edges_of_a_node():
     assert reach(np.array([[0, 1], [2, 3]])) == 0
     assert reach(np.array([[0, 1], [2, 3], [1, 2]])) == 2  # the first waits for the last
     assert reach(np.array([[0, 1], [1, 2], [2, 3]])) == 1

@@ -41,7 +41,7 @@ def one_process(monkeypatch):
 
 
 @pytest.mark.parametrize("name", FIGURES)
-def test_the_files_of_a_figure(name, short, tmp_path):
+def test_a_figure_has_its_files(name, short, tmp_path):
     entry = drawn(name, tmp_path)
     assert entry["files"] == [f"{name}.{suffix}" for suffix in SUFFIXES]
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(entry["files"])
@@ -155,7 +155,7 @@ def test_figures_are_chosen_in_their_order():
     assert catalogue.chosen(["gravity", "figure-3", "gravity"]) == ["figure-3", "gravity"]
 
 
-def test_the_command(short, one_process, tmp_path, capsys):
+def test_the_command_draws_the_figures_and_prints_their_readings(short, one_process, tmp_path, capsys):
     out = tmp_path / "figures"
     assert main(["figures", "figure-4", "--out", str(out)]) == 0
     said, err = capsys.readouterr()
@@ -194,7 +194,7 @@ def test_a_missed_bound_exits_1(short, one_process, tmp_path, capsys, monkeypatc
     assert "FAILS" in said
 
 
-def test_progress_on_a_terminal(short, one_process, tmp_path, capsys, monkeypatch):
+def test_progress_is_shown_on_a_terminal(short, one_process, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(terminal.sys.stderr, "isatty", lambda: True, raising=False)
     assert main(["figures", "figure-4", "--out", str(tmp_path / "out")]) == 0
     assert "figure-4" in capsys.readouterr().err

@@ -26,7 +26,7 @@ def test_every_shipped_scene_is_kept():
 
 
 @pytest.mark.parametrize("name", sorted(KEPT))
-def test_integer_model(name):
+def test_the_integer_model_keeps_every_bit(name):
     assert digest(run(scene.load(ROOT / "scenes" / f"{name}.toml"), "fixed").raw) == KEPT[name]
 
 
@@ -38,5 +38,5 @@ def test_one_bit_changes_the_digest():
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("name", sorted(KEPT))
-def test_circuit(name):
+def test_the_circuit_keeps_every_bit(name):
     assert digest(run(scene.load(ROOT / "scenes" / f"{name}.toml"), "rtl").raw) == KEPT[name]

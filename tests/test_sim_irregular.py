@@ -56,7 +56,7 @@ def apart(one):
 
 @pytest.mark.parametrize("material", MATERIALS)
 @pytest.mark.parametrize("name", BODIES)
-def test_bodies(name, material, seed):
+def test_irregular_bodies_stay_within_the_bounds(name, material, seed):
     one = pressed(name, material, seed)
     distance, moved = apart(one)
     print(
@@ -69,7 +69,7 @@ def test_bodies(name, material, seed):
 
 
 @pytest.mark.parametrize("name", ["ring", "ball", "bun"])
-def test_shipped(name):
+def test_shipped_irregular_scenes_stay_within_the_bounds(name):
     one = scene.load(ROOT / "scenes" / f"{name}.toml")
     distance, moved = apart(one)
     print(f"{name}: {distance:.1e}")

@@ -84,13 +84,13 @@ def check(numbers, shape, seed):
 
 
 @pytest.mark.parametrize("shape", [(2, 1, 3), (4, 2, 3), (1, 1, 1), (2, 2, 1)])
-def test_some_meshes(shape, seed):
+def test_some_meshes_take_the_cycles_of_the_model(shape, seed):
     check(range(20), shape, seed)
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("shape", CIRCUITS)
-def test_three_hundred_meshes(shape, seed):
+def test_three_hundred_meshes_take_the_cycles_of_the_model(shape, seed):
     """Forty objects in each circuit, all different."""
     first = 40 * CIRCUITS.index(shape)
     check(range(first, first + 40), shape, seed)

@@ -35,7 +35,7 @@ def test_the_picture_plane_is_square_to_the_view():
     assert np.linalg.norm(surface.LIGHT) == pytest.approx(1, abs=0.01)
 
 
-def test_outlines():
+def test_outlines_have_the_length_of_the_border():
     m = MESHES[2]
     border = surface.outline(m)
     assert np.linalg.norm(border[:, 1] - border[:, 0], axis=1).sum() == pytest.approx(2 * (0.1 + 0.08))

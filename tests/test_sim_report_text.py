@@ -19,7 +19,7 @@ from sim.report.page import brief, least, percent, si, slug
         (1234567, "1\u202f234\u202f567"),
     ],
 )
-def test_brief(value, text):
+def test_a_figure_is_written_briefly(value, text):
     assert brief(value) == text
 
 
@@ -35,7 +35,7 @@ def test_brief(value, text):
         (54321.0, "N", "54300 N"),
     ],
 )
-def test_si(value, unit, text):
+def test_a_quantity_gets_a_prefix_to_its_unit(value, unit, text):
     assert si(value, unit) == text
 
 
@@ -50,10 +50,10 @@ def test_the_least_headroom_is_that_of_what_depends_on_the_scene():
 
 
 @pytest.mark.parametrize("part, text", [(0.5041, "50.4 %"), (-1e-9, "0.0 %"), (1.0, "100.0 %")])
-def test_percent(part, text):
+def test_a_part_is_written_in_per_cent(part, text):
     assert percent(part) == text
 
 
 @pytest.mark.parametrize("name, text", [("plastic-3d", "plastic-3d"), ("Wet clay / 2", "wet-clay-2"), ("//", "scene")])
-def test_slug(name, text):
+def test_a_name_becomes_part_of_an_address(name, text):
     assert slug(name) == text

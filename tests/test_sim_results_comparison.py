@@ -67,7 +67,7 @@ class OneBit(Standin):
 
 
 @pytest.mark.parametrize("material", ["viscoelastic", "plastic-force"])
-def test_entry(circuit, material):
+def test_an_entry_holds_what_the_runs_show(circuit, material):
     scene = block(material, steps=(10, 5, 10), every=5)
     result = compare(scene, lanes=2)
     entry = result.entry()
@@ -133,7 +133,7 @@ def test_an_existing_run_is_not_repeated(circuit):
     assert complete(scene, compare(scene).runs, compared_backends()).circuit.backend == "rtl"
 
 
-def test_shortcomings():
+def test_shortcomings_are_named():
     entry = {"rtl_equals_fixed": True, "saturations": 0, "faults": {}, "max_dx_rel": 1e-5, "bound": 1e-5}
     assert shortcomings(entry) == []
     assert shortcomings(entry | {"rtl_equals_fixed": None}) == []
@@ -154,7 +154,7 @@ def test_shortcomings():
 
 
 @pytest.mark.parametrize("x, text", [(1e-5, "1e-5"), (1.34e-6, "1.3e-6"), (9.99e-7, "1e-6"), (0.0, "0"), (20, "2e1")])
-def test_power(x, text):
+def test_small_numbers_are_written_in_short(x, text):
     assert power(x) == text
 
 
@@ -172,7 +172,7 @@ def test_a_comparison_reports_its_progress(circuit):
 @pytest.mark.parametrize(
     "material, low, high", [("plastic", -0.01, 0.05), ("viscoelastic", 0.95, 1.05), ("rheological", 0.2, 0.9)]
 )
-def test_recovery(material, low, high):
+def test_the_recovery_is_that_of_the_material(material, low, high):
     scene = block(material, steps=(40, 300, 3000), every=400, mass=0.001)
     assert low <= watched(scene).recovery(scene, run(scene, "float").trajectory) <= high
 

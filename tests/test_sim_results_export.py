@@ -96,7 +96,7 @@ def test_a_pressed_edge_pushes(tmp_path):
     assert upright.sum() == 6 and frame.cell_data["force"][0][upright].mean() > 0
 
 
-def test_to_another_folder(run, tmp_path, capsys):
+def test_another_folder_can_be_chosen(run, tmp_path, capsys):
     out = tmp_path / "elsewhere"
     assert main(["export", str(run), "--vtu", "--out", str(out)]) == 0
     assert (out / "run.pvd").exists() and not (run / "vtu").exists()
@@ -114,7 +114,7 @@ def test_to_another_folder(run, tmp_path, capsys):
         ),
     ],
 )
-def test_mistakes(arguments, message, tmp_path, monkeypatch, capsys):
+def test_mistakes_in_the_arguments_are_one_line(arguments, message, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     main(["run", str(written(tmp_path)), "--backend", "float", "--out", "RUN"])
     (tmp_path / "theirs").mkdir()

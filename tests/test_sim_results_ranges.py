@@ -32,7 +32,7 @@ def watched_by_hand():
                 if isinstance(number, QArray):
                     names[name] = number.fmt.name
 
-    loaded = limits.encode(scene)
+    loaded = limits.encode_checked(scene)
     machine = Machine(loaded.image, watch)
     for phase in scene.phases:
         machine.restart(loaded.start(phase, machine.v))
@@ -42,7 +42,7 @@ def watched_by_hand():
 
 def test_watching_changes_no_bit(watched_by_hand):
     scene, result, _, machine, _ = watched_by_hand
-    loaded = limits.encode(scene)
+    loaded = limits.encode_checked(scene)
     for name, order in (("x", loaded.node_order), ("v", loaded.node_order), ("ratio", loaded.edge_order)):
         np.testing.assert_array_equal(getattr(machine, name), getattr(result.raw, name)[-1][order])
 
@@ -90,7 +90,7 @@ def test_the_largest_and_the_headroom(watched_by_hand):
 
 def test_what_saturates_has_no_headroom():
     scene = block("viscoelastic", steps=(6, 1, 1), every=1)
-    loaded, seen = limits.encode(scene), ranges.Ranges()
+    loaded, seen = limits.encode_checked(scene), ranges.Ranges()
     machine = Machine(loaded.image, seen)
     machine.step(5)
     machine.v = np.full_like(machine.v, Formats().velocity.raw_max)
@@ -102,12 +102,12 @@ def test_what_saturates_has_no_headroom():
 
 
 def test_trial_forces_of_several_materials_have_no_common_unit():
-    units = limits.encode(block()).units
+    units = limits.encode_checked(block()).units
     assert ranges.in_si("trial full scale", units) == (units.trial[0], "N")
     assert ranges.in_si("trial full scale", replace(units, trial=(1.0, 2.0))) == (1.0, "full scale")
 
 
-def test_sampled_steps():
+def test_sampled_steps_are_spread_evenly_and_hold_the_starts_of_phases():
     scene = block(steps=(400, 3, 300), every=1)
     frames = ranges.sampled(scene)
     assert ranges.SAMPLES <= len(frames) <= ranges.SAMPLES + 2

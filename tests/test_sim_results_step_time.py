@@ -52,7 +52,7 @@ def test_a_timed_board_takes_the_cycles_of_the_model_at_its_clock(tmp_path):
     scene = block(dim=3)
     found = next(board for board in step_time.on_boards(scene, tmp_path) if board["timed"])
     parameters = Parameters(**CIRCUIT)
-    cycles = Wavefront(limits.encode(scene).image, parameters).per_step()
+    cycles = Wavefront(limits.encode_checked(scene).image, parameters).per_step()
     assert cycles >= RK4.stages * len(scene.mesh.edges) / 2
     assert found == {
         "board": "ulx3s-85f",

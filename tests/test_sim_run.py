@@ -41,7 +41,7 @@ def test_native_is_the_numpy_model(material):
     np.testing.assert_array_equal(native.trajectory.reaction, reference.trajectory.reaction)
 
 
-def test_frames():
+def test_frames_are_kept_at_the_steps_asked_for():
     scene = block(steps=(10, 4, 6), every=7)
     result = run(scene, "fixed")
     kept = result.trajectory
@@ -86,7 +86,7 @@ def test_held_nodes_move_as_prescribed():
     assert (raw.x[rest, press.driven] == raw.x[end, press.driven]).all()
 
 
-def test_reactions():
+def test_reactions_are_those_of_held_nodes():
     """None before the first step; afterwards 0 on free nodes; in the end they carry the weight."""
     m = MESHES[2]
     scene = objects.scene(
@@ -190,7 +190,7 @@ def test_enough_steps_are_checked(every):
 
 
 @pytest.mark.parametrize("backend", ["float", "fixed"])
-def test_progress(backend):
+def test_progress_is_reported_every_so_often(backend):
     told = []
     run(block(steps=(250, 20, 30), every=400), backend, progress=told.append)
     assert told == sorted(told) and told[-1] == 300
@@ -216,7 +216,7 @@ def test_progress(backend):
         ({"backend": "fixed", "edge_order": [0] * 23}, "edge_order must be a permutation of 0 to 22"),
     ],
 )
-def test_refusals(arguments, message):
+def test_arguments_that_cannot_be_used_are_refused(arguments, message):
     scene = block()
     assert len(scene.mesh.edges) == 23
     with pytest.raises(InputError) as caught:

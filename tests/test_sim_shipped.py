@@ -31,14 +31,14 @@ def test_there_are_scenes():
 
 @pytest.mark.parametrize("lanes", [1, 2, 4])
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
-def test_lanes(path, lanes, fixed):
+def test_any_number_of_lanes_gives_the_same_bits(path, lanes, fixed):
     circuit = run(scene.load(path), "rtl", lanes=lanes)
     assert circuit.raw.same(fixed(path).raw)
     assert circuit.faults == fixed(path).faults == {}
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
-def test_shuffled_edges(path, fixed, rng):
+def test_shuffled_edges_give_the_same_bits(path, fixed, rng):
     loaded = scene.load(path)
     shuffled = rng.permutation(len(loaded.mesh.edges))
     circuit = run(loaded, "rtl", lanes=2, edge_order=shuffled)

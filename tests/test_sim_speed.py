@@ -46,7 +46,7 @@ def test_every_mesh_of_the_benchmark_moves_as_the_golden_model(name):
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("dtype, allowed", [(np.float64, (1e-12, 1e-11, 1e-12)), (np.float32, (2e-5, 5e-3, 2e-4))])
-def test_phases_loads_bounds_and_mixed_materials(dim, dtype, allowed):
+def test_phases_loads_bounds_and_mixed_materials_are_those_of_the_model(dim, dtype, allowed):
     mesh = MESHES[dim]
     phases = objects.press_hold_release(mesh, np.ptp(mesh.points[:, -1]) / 10, (80, DT), 60, 60)
     load = np.zeros(mesh.points.shape)
@@ -117,13 +117,13 @@ def test_no_two_threads_write_to_one_cache_line(dtype):
         ),
     ],
 )
-def test_refusals(change, message):
+def test_arguments_that_cannot_be_used_are_refused(change, message):
     with pytest.raises(InputError, match=f"^{re.escape(message)}$"):
         CompiledModel(**{"scene": meshes.scene("3x3"), **change})
 
 
 @pytest.mark.parametrize("name", ["9", "9x", "2x2x2x2", "-3x3", "3 x 3"])
-def test_names_of_meshes(name):
+def test_a_wrong_name_of_a_mesh_is_refused(name):
     with pytest.raises(InputError, match=f"^meshes must be numbers of nodes like 9x9 or 5x5x5, not {name!r}$"):
         meshes.scene(name)
 
@@ -133,7 +133,7 @@ def test_every_step_is_timed_by_itself():
     assert times.shape == (50,) and (times > 100).all()
 
 
-def test_software(monkeypatch):
+def test_the_times_of_the_software_are_complete(monkeypatch):
     monkeypatch.setattr(timing, "LAP", 40)
     told = []
     figures = timing.software(meshes.scene("9x9"), 100, told.append)

@@ -51,7 +51,7 @@ def quick(monkeypatch):
     )
 
 
-def test_entry():
+def test_an_entry_follows_from_cycles_and_clock():
     scene = meshes.scene("9x9")
     entry = bench.entry(scene, 4, 1, 500, 100.0, software(scene, 10, print))
     assert list(entry) == KEYS
@@ -60,7 +60,7 @@ def test_entry():
     assert {name: program["ratio"] for name, program in entry["software"].items()} == dict.fromkeys(timing.SOFTWARE, 4)
 
 
-def test_writes_entries_and_shows_two_tables(quick, tmp_path, capsys):
+def test_the_command_writes_entries_and_shows_two_tables(quick, tmp_path, capsys):
     out = tmp_path / "a" / "bench.json"
     assert main(["bench", "--meshes", "9x9", "5x5x5", "--steps", "7", "--clock", "100", "--out", str(out)]) == 0
     entries = json.loads(out.read_text())
@@ -99,7 +99,7 @@ def test_a_machine_that_others_use_is_noticed(quick, tmp_path, capsys, monkeypat
     )
 
 
-def test_progress_on_a_terminal(quick, tmp_path, capsys, monkeypatch):
+def test_progress_is_shown_on_a_terminal(quick, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert main(["bench", "--meshes", "3x3", "--out", str(tmp_path / "bench.json")]) == 0
     lines = capsys.readouterr().err.split("\r\x1b[K")
@@ -125,7 +125,7 @@ def test_progress_on_a_terminal(quick, tmp_path, capsys, monkeypatch):
         (["--meshes", "1x9"], "nodes must be 2 whole numbers of at least 2, not [1, 9]"),
     ],
 )
-def test_refusals(quick, arguments, message, tmp_path, capsys):
+def test_mistakes_in_the_arguments_are_one_line(quick, arguments, message, tmp_path, capsys):
     assert main(["bench", *arguments, "--out", str(tmp_path / "bench.json")]) == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err == f"error: {message}\n"
@@ -151,7 +151,7 @@ def test_out_is_refused_before_anything_is_timed(quick, out, reason, tmp_path, c
         (9, 1, "lanes must be a whole number from 1 to 8, not 9"),
     ],
 )
-def test_circuits_that_do_not_exist(lanes, updates, message):
+def test_circuits_that_do_not_exist_are_refused(lanes, updates, message):
     with pytest.raises(InputError, match=f"^{message}$"):
         cycles.cycles_per_step(meshes.scene("9x9"), lanes, updates)
 

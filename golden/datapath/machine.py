@@ -17,7 +17,7 @@ from golden.numbers.qformat import BIT
 
 
 class Machine:
-    """The bit-exact model of the circuit, loaded with an `MemoryImage`.
+    """The bit-exact model of the circuit, loaded with a `MemoryImage`.
 
     Parameters
     ----------

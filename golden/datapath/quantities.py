@@ -62,8 +62,8 @@ EDGE = (
     _measured("dashpot", "damper's trial force"),
     Quantity("trial", "trial force"),
     Quantity("negative", "1 if the trial force is negative"),
-    Quantity("size", "size of the trial force, not normalised"),
-    _measured("g", "size of the trial force", normalised=True),
+    Quantity("size", "magnitude of the trial force, not normalised"),
+    _measured("g", "magnitude of the trial force", normalised=True),
     Quantity("g_shift", "shift of the trial force"),
     # Force-dependent damper
     Quantity("octave_fraction", "fraction of an octave"),
@@ -116,8 +116,8 @@ NODE = (
     _measured("v_total", "sum of the velocity's slopes"),
     _measured("v", "velocity"),
     Quantity("v_base_next", "velocity at the start of the step"),
-    _measured("displacement", "way in a step"),
-    _measured("x_total", "sum of the ways"),
+    _measured("displacement", "displacement in a step"),
+    _measured("x_total", "sum of the displacements"),
     _measured("x", "position"),
     Quantity("x_base_next", "position at the start of the step"),
 )

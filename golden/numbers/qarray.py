@@ -8,7 +8,7 @@ from collections import Counter
 
 import numpy as np
 
-from golden.numbers.qformat import BIT, Q, count, smallest, total
+from golden.numbers.qformat import BIT, Q, count, round_half_up, smallest, total
 
 
 class QArray:
@@ -129,7 +129,7 @@ class QArray:
             rounded = floor = raw
         else:
             floor = raw >> drop
-            rounded = floor if cut else ((raw << 1) >> drop) + 1 >> 1
+            rounded = floor if cut else round_half_up(raw, drop)
         result = np.minimum(np.maximum(rounded, fmt.raw_min), fmt.raw_max)
         if beyond is not None:
             result = np.where(beyond, np.where(raw < 0, fmt.raw_min, fmt.raw_max), result)

@@ -141,6 +141,14 @@ def total(formats) -> Q:
     return Q(both.int_bits + (len(formats) - 1).bit_length(), both.frac_bits, both.signed)
 
 
+def round_half_up(raw, drop):
+    """Return ``raw / 2**drop`` rounded half up: an int, or an array of integers of at most 63 bits.
+
+    ``drop`` is at least 0.
+    """
+    return ((raw << 1) >> drop) + 1 >> 1
+
+
 def smallest(raw: int) -> Q:
     """Return the smallest integer format that holds ``raw``."""
     return Q((~raw).bit_length() + 1, 0) if raw < 0 else unsigned(max(raw.bit_length(), 1), 0)

@@ -100,6 +100,6 @@ def _per_edge(owner: np.ndarray, mesh: Mesh) -> np.ndarray:
 
 def _describe_cells(mesh: Mesh, cells: np.ndarray) -> str:
     """Return the index and the centroid of the first of some elements, and how many more there are."""
-    place = ", ".join(f"{x:.6g}" for x in mesh.points[mesh.cells[cells[0]]].mean(axis=0))
+    centre = ", ".join(f"{x:.6g}" for x in mesh.points[mesh.cells[cells[0]]].mean(axis=0))
     more = f" and {len(cells) - 1} more" if len(cells) > 1 else ""
-    return f"element {cells[0]} around [{place}]{more}"
+    return f"element {cells[0]} around [{centre}]{more}"

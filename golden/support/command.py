@@ -3,6 +3,7 @@
 import argparse
 import sys
 from contextlib import contextmanager
+from types import ModuleType
 
 from golden.support.errors import InputError, InternalError
 
@@ -12,6 +13,17 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message):
         raise InputError(f"{message} (see {self.prog} --help)")
+
+
+def command_parser(prog: str, description: str, commands: dict[str, ModuleType]) -> Parser:
+    """Return the parser of a program whose commands are modules: each has ``HELP``, ``add_options`` and ``run``."""
+    main = Parser(prog=prog, description=description)
+    subparsers = main.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, module in commands.items():
+        command = subparsers.add_parser(name, help=module.HELP)
+        module.add_options(command)
+        command.set_defaults(run=module.run)
+    return main
 
 
 def execute(parser: Parser, arguments=None) -> int:

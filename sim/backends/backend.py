@@ -29,7 +29,7 @@ class Option:
     keywords: Mapping[str, Any] = field(default_factory=dict)
 
     def add_to(self, parser: ArgumentParser, owner: str = "") -> None:
-        """Add the option to a command; ``owner`` stands in front of its help."""
+        """Add the option to a command; ``owner`` is put before its help."""
         parser.add_argument(f"--{self.name}", help=f"{owner}{self.help}", **self.keywords)
 
 
@@ -100,5 +100,5 @@ class IntegerBackend(Backend):
         """Raise `golden.support.errors.InputError` for a scene that is too large."""
 
     def witness(self, image: MemoryImage) -> Witness | None:
-        """Return what computes single steps again, if its machine has to be checked so."""
+        """Return a witness that computes single steps again, or None if its machine needs no such check."""
         return None

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class BoardBackend(IntegerBackend):
-    """A circuit on a board: behind a ``link`` that is open already, or at a ``port`` (any URL of pyserial's)."""
+    """A circuit on a board, over a ``link`` that is open already or at a ``port`` (any URL that pyserial opens)."""
 
     link: Board | None = None
     port: str | None = None
@@ -32,7 +32,11 @@ class BoardBackend(IntegerBackend):
     words = "board"
     summary = "a circuit on a board"
     options = (
-        Option("port", "a serial port or any other URL of pyserial's, as socket://127.0.0.1:5000", {"metavar": "URL"}),
+        Option(
+            "port",
+            "a serial port or another pyserial URL, such as socket://127.0.0.1:5000",
+            {"metavar": "URL"},
+        ),
         Option("baud", "bits a second (1000000)", {"type": whole, "metavar": "N"}),
     )
 
@@ -44,7 +48,7 @@ class BoardBackend(IntegerBackend):
         return cls(port=args.port, baud=args.baud)
 
     def check(self) -> None:
-        """Raise `InputError` where there is neither a link nor a port."""
+        """Raise `InputError` if there is neither a link nor a port."""
         if self.link is None and self.port is None:
             raise InputError(f"link must be given for the backend {self.name}")
 

@@ -61,7 +61,7 @@ class EdgeBench:
             self._handle = None
 
     def load(self, damper: dict[str, np.ndarray]):
-        """The damper tables: `golden.datapath.records.damper_word` -> (tables, segments)."""
+        """Load the damper tables: `golden.datapath.records.damper_word` -> (tables, segments)."""
         word, flat = records.damper_word(self.datapath.formats), {name: x.ravel() for name, x in damper.items()}
         for half, quantity in enumerate(("rho", "sigma")):
             packed = word.starting_with(quantity).pack(flat)

@@ -57,6 +57,7 @@ class ClockedMachine(Machine, Protocol):
     parameters: Parameters
 
 
+@runtime_checkable
 class FloatMachine(Protocol):
     """An object in float64."""
 

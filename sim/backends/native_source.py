@@ -5,6 +5,7 @@ from golden.datapath.formats import Formats
 from golden.datapath.graphs import edge_graph, node_graph
 from golden.datapath.rk4 import RK4
 from golden.numbers.graph import AXES, Graph, Operation
+from golden.numbers.qformat import round_half_up
 
 WIDEST = 63
 """Bits of the widest number, sign included: its rounding must fit an int64."""
@@ -115,7 +116,8 @@ class _Program:
         if right:
             return f"shift_right<{str(operation.detail == 'cut').lower()}>({raw}, {drop}, {right}, {bounds})"
         rounded = f"round_half_up({raw}, {drop})" if drop else raw
-        low, high = (_shifted(extreme, source, target) for extreme in (source.raw_min, source.raw_max))
+        left = max(target.frac_bits - source.frac_bits, 0)
+        low, high = (round_half_up(extreme << left, drop) for extreme in (source.raw_min, source.raw_max))
         if target.raw_min <= low and high <= target.raw_max:
             return rounded
         floor = f"{raw} >> {drop}" if drop else raw
@@ -142,12 +144,6 @@ def _aligned(*operations: Operation) -> list[str]:
 
 def _left(raw: str, by: int) -> str:
     return f"({raw} << {by})" if by else raw
-
-
-def _shifted(raw: int, source, target) -> int:
-    """``raw`` in the format ``target``, rounded half up."""
-    drop = source.frac_bits - target.frac_bits
-    return raw << -drop if drop <= 0 else (raw >> drop - 1) + 1 >> 1
 
 
 def _table_field(operation: Operation) -> str:

@@ -159,7 +159,7 @@ def _key(*texts: str) -> str:
 
 @contextmanager
 def _once(target: Path):
-    """Give whether ``target`` is missing, under a lock: one process builds it, the others wait."""
+    """Yield True if ``target`` is missing, under a lock: one process builds it, the others wait."""
     target.parent.mkdir(parents=True, exist_ok=True)
     with open(target.with_suffix(".lock"), "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -168,7 +168,7 @@ def _once(target: Path):
 
 @contextmanager
 def _workshop(folder: Path):
-    """Give a folder to build in, removed in any case: a result is moved out of it whole or not at all."""
+    """Yield a folder to build in, removed in any case: a result is moved out of it whole or not at all."""
     work = Path(tempfile.mkdtemp(prefix="building_", dir=folder))
     try:
         yield work

@@ -25,7 +25,7 @@ def add_options(command: ArgumentParser) -> None:
 
 
 def run(args: Namespace) -> int:
-    """Compare the scenes; 1 if one of them does not pass."""
+    """Compare the scenes; return 1 if one of them does not pass."""
     from sim import report
     from sim.backends.registry import compared_backends
     from sim.compare import RANGES
@@ -40,7 +40,7 @@ def run(args: Namespace) -> int:
         raise InputError(f"scenes must have names of their own, not {min(twice)!r} twice")
     for scene in loaded:
         with about(scene):
-            circuit.check_room(limits.encode(scene))
+            circuit.check_room(limits.encode_checked(scene))
     out = folder.claim(args.out, args.force)
     work = partial(report.section, lanes=circuit.lanes, updates=circuit.updates)
     with terminal.scene_bars(loaded, (*compared_backends(), RANGES)) as report_progress:

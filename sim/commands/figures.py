@@ -28,7 +28,7 @@ def add_options(command: ArgumentParser) -> None:
 
 
 def run(args: Namespace) -> int:
-    """Draw the figures; 1 if one of them does not show what it must."""
+    """Draw the figures; return 1 if one of them does not show what it must."""
     from sim.figures import catalogue, make, table
     from sim.support import folder, terminal
 

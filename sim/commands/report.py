@@ -1,4 +1,4 @@
-"""``python -m sim report``: the page of runs that there are already."""
+"""``python -m sim report``: the page of existing runs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 from sim.backends.float64 import FloatBackend
 from sim.commands.common import add_json, add_out, print_json
 
-HELP = "the page of runs that there are already"
+HELP = "write the page of existing runs"
 
 
 def add_options(command: ArgumentParser) -> None:
@@ -26,7 +26,7 @@ def add_options(command: ArgumentParser) -> None:
 
 
 def run(args: Namespace) -> int:
-    """Write the page of the runs; 1 if a scene does not pass."""
+    """Write the page of the runs; return 1 if a scene does not pass."""
     from sim import report
     from sim.compare import RANGES
     from sim.results.run_groups import group_by_scene
@@ -41,7 +41,7 @@ def run(args: Namespace) -> int:
 
 
 def write(args: Namespace, sections: list, out: Path) -> int:
-    """Write the page and print its table; 1 if a scene does not pass, and say why."""
+    """Write the page and print its table; return 1 if a scene does not pass, and say why."""
     from sim import report
     from sim.results.comparison import shortcomings
     from sim.results.table import print_table

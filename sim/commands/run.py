@@ -38,7 +38,8 @@ def _options() -> dict[str, tuple[Option, list[str]]]:
 
 
 def chosen(args: Namespace, out: Path) -> Backend:
-    """Return the backend that the options ask for. Raises `InputError` for one that can't be, or another's options."""
+    """Return the backend that the options ask for. Raises `InputError` for values that can't
+    be used, and for options of another backend."""
     for name, (_, owners) in _options().items():
         if vars(args)[name] and args.backend not in owners:
             raise InputError(f"--{name} must go with --backend {' or '.join(owners)}, not {args.backend}")
@@ -48,7 +49,7 @@ def chosen(args: Namespace, out: Path) -> Backend:
 
 
 def run(args: Namespace) -> int:
-    """Run the scene and keep the run; 1 if something saturated."""
+    """Run the scene and keep the run; return 1 if something saturated."""
     from sim.results import run_folder
     from sim.run import run
     from sim.support import folder, terminal

@@ -33,7 +33,8 @@ class EncodedScene:
     edge_order: np.ndarray
 
     def start(self, phase: Phase, v: np.ndarray) -> np.ndarray:
-        """Set loads and masses of a phase in the image; return velocities ``v`` (raw) with those of held nodes set."""
+        """Set loads and masses of a phase in the image; return the velocities ``v`` (raw) with those of held nodes
+        replaced."""
         scene, units, fmt = self.scene, self.units, self.image.formats
         weight = scene.mass[:, None] * scene.gravity
         self.image.load = raw_vectors((phase.load + weight)[self.node_order] / units.force, fmt.accumulator)

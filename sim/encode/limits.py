@@ -8,16 +8,18 @@ from golden.datapath import records
 from golden.datapath.formats import Formats
 from golden.physics.scene import Scene
 from golden.support.errors import InputError
-from sim.encode import encode as encoding
-from sim.encode.encode import EncodedScene
+from sim.encode.encode import EncodedScene, encode
 from sim.encode.switch import with_materials
 
 
-def encode(scene: Scene, edge_order: np.ndarray | None = None) -> EncodedScene:
-    """Encode a scene and try the numbers of each phase. Raises `InputError` that names what doesn't fit."""
+def encode_checked(scene: Scene, edge_order: np.ndarray | None = None) -> EncodedScene:
+    """Return the scene of `sim.encode.encode.encode` once the numbers of every phase have been tried.
+
+    Raises `InputError` that names what doesn't fit.
+    """
     _check_speed(scene)
     try:
-        encoded = encoding.encode(scene, edge_order=edge_order)
+        encoded = encode(scene, edge_order=edge_order)
         for phase in scene.phases[::-1]:  # the first one last: it stays
             encoded.start(phase, encoded.image.v)
             _check_masses(encoded)

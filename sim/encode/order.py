@@ -37,10 +37,10 @@ def sweeps(points: np.ndarray, edges: np.ndarray):
 
 def reach(edges: np.ndarray) -> int:
     """Return the longest distance in a list of edges from one to the last that shares a node with it."""
-    places = np.arange(len(edges))
+    positions = np.arange(len(edges))
     last = np.zeros(edges.max() + 1, np.int64)
-    np.maximum.at(last, edges, places[:, None])
-    return int((last[edges].max(axis=1) - places).max())
+    np.maximum.at(last, edges, positions[:, None])
+    return int((last[edges].max(axis=1) - positions).max())
 
 
 def ranks(order: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from sim.figures.runs import EDGE, Pair
 from sim.results.comparison import BOUND
 
 RECOVERY, BULGE = 1e-3, 1e-4
-"""Largest differences that pass: of bounce-back and residual, and of a side's bulge as part of the object's size."""
+"""Largest differences that pass: of bounce-back and residual; of a side's bulge over the object's size."""
 
 SMALL = 0.01  # of a press: a smaller value is compared as a part of the press
 
@@ -35,7 +35,7 @@ class Reading:
 
     @property
     def difference(self) -> float:
-        """The distance of the circuit from the expected value, as part of ``scale``."""
+        """The distance of the circuit from the expected value, as a fraction of ``scale``."""
         return abs(self.circuit - self.expected) / self.scale
 
     @property
@@ -130,7 +130,7 @@ def fall(pair: Pair) -> Reading:
 
 
 def apart(pair: Pair) -> Reading:
-    """Return the largest distance of a node between circuit and float64 in any frame, as part of the object's size."""
+    """Return the largest distance of a node between circuit and float64 in any frame, over the object's size."""
     return Reading(
         pair.scene.name,
         "max dx",

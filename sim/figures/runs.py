@@ -54,7 +54,7 @@ class Pair:
         return int(np.abs(self.circuit.trajectory.t - t).argmin())
 
     def difference(self) -> float:
-        """Return the largest distance of a node between circuit and float64 in any frame, as part of the size."""
+        """Return the largest distance of a node between circuit and float64 in any frame, as a fraction of the size."""
         return float(dx_rel(self.scene, self.circuit, self.float64).max())
 
 

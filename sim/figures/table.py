@@ -8,7 +8,7 @@ HEAD = "scene", "quantity", "circuit", "expected", "against", "difference", "all
 
 
 def print_readings(entries: dict[str, dict]) -> None:
-    """Print one line for each reading, each once: lengths in mm, differences as part of the number or of the size."""
+    """Print one line for each reading, each once: lengths in mm, differences over the number or the size."""
     rows = [HEAD]
     for read in (read for entry in entries.values() for read in entry["readings"]):
         values = (

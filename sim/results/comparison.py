@@ -51,7 +51,8 @@ class Comparison:
         return energy.energies(self.scene, self.circuit.trajectory)
 
     def dx_rel(self) -> np.ndarray:
-        """Return (F,) the largest distance of a node in integers from its place in float64, by the object's size."""
+        """Return (F,) the largest distance of a node in integers from its position in float64, over the object's
+        size."""
         return dx_rel(self.scene, self.circuit, self.float64)
 
     def entry(self) -> dict:
@@ -87,7 +88,7 @@ class Comparison:
 
 
 def dx_rel(scene: Scene, one: Result, other: Result) -> np.ndarray:
-    """Return (F,) the largest distance of a node in one run from its place in the other, by the object's size."""
+    """Return (F,) the largest distance of a node in one run from its position in the other, over the object's size."""
     apart = np.linalg.norm(one.trajectory.x - other.trajectory.x, axis=2)
     return apart.max(axis=1) / scene.size
 

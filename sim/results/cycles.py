@@ -71,10 +71,10 @@ class Wavefront:
 
 
 def issue_times(ready: np.ndarray, first: int, pace: int = 1) -> np.ndarray:
-    """Return the times at which the entries of a list are issued in order that are ready at these times: one in
+    """Return the cycle in which each entry of a list is issued: in order, when it is ``ready``, at most one every
     ``pace`` cycles, none before ``first``."""
-    turns = pace * np.arange(len(ready))
-    return turns + np.maximum.accumulate(np.maximum(ready - turns, first))
+    earliest = pace * np.arange(len(ready))
+    return earliest + np.maximum.accumulate(np.maximum(ready - earliest, first))
 
 
 def cycles_per_step(scene: Scene, lanes: int, updates: int) -> int:
@@ -85,7 +85,7 @@ def cycles_per_step(scene: Scene, lanes: int, updates: int) -> int:
     InputError
         If there is no such circuit, or it could not hold the scene at any capacity.
     """
-    image = limits.encode(scene).image
+    image = limits.encode_checked(scene).image
     room = {"nodes": max(2, image.nodes), "edges": len(image.edges), "materials": len(image.materials)}
     try:
         parameters = Parameters(lanes=lanes, updates=updates, **room)

@@ -92,7 +92,7 @@ def measure(scene: Scene, raw: Raw, progress: Callable[[int], object] | None = N
 
     ``progress`` is called with the step that was reached.
     """
-    ranges, encoded, begun = Ranges(), limits.encode(scene), None
+    ranges, encoded, begun = Ranges(), limits.encode_checked(scene), None
     machine = Machine(encoded.image, ranges)
     for frame, phase in _with_phase(scene):
         machine.x, machine.v = raw.x[frame][encoded.node_order], raw.v[frame][encoded.node_order]

@@ -107,7 +107,7 @@ def load_result(folder) -> tuple[Scene, Result]:
     )
     if not BACKENDS[backend].integers:
         return scene, result
-    encoded = limits.encode(scene)
+    encoded = limits.encode_checked(scene)
     raw = raw_frames(encoded, frames)
     if raw is None:
         raise _broken(folder, f"the state in {TRAJECTORY} is not one of a circuit's integers")

@@ -53,7 +53,7 @@ def _timed(scene: Scene, timing) -> dict:
     sizes = {"lanes": parameters.lanes, "updates": parameters.updates, "axes": parameters.axes}
     entry = sizes | {"clock_mhz": timing.clock_mhz}
     try:
-        cycles = Wavefront(limits.encode(scene).image, parameters).per_step()
+        cycles = Wavefront(limits.encode_checked(scene).image, parameters).per_step()
     except InputError:  # the circuit is too small
         return entry | {"fits": False}
     step_us = cycles / timing.clock_mhz
