@@ -190,6 +190,7 @@ def emitted():
     return modules(Parameters(lanes=2, nodes=16, edges=60, materials=8, tables=3, family="ecp5"))
 
 
+@pytest.mark.campaign
 def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypatch, rng):
     """The models spoil a word that is read in the cycle in which it is written: the circuit relies on none."""
     image = random_image(rng)
