@@ -207,6 +207,7 @@ def test_a_simulated_circuit_of_primitives_has_the_models_bits(emitted, monkeypa
     circuit.close()
 
 
+@pytest.mark.campaign
 def test_verilator_finds_nothing_but_what_is_waived(emitted, tmp_path):
     path, excused = tmp_path / "rheogate.v", get_family("ecp5").waivers.read_text()
     path.write_text("\n".join(emitted[:2]))

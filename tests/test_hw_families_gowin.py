@@ -54,6 +54,7 @@ def test_a_multiplier_that_does_not_fit_stays_generic(width, blocks):
         assert len(re.findall(r"^  MULT27X36 ", text, re.MULTILINE)) == blocks
 
 
+@pytest.mark.campaign
 def test_verilator_finds_nothing_but_what_is_waived(tmp_path):
     lane, top, _ = modules(Parameters(lanes=1, nodes=16, edges=16, materials=2, tables=1, family="gowin"))
     path = tmp_path / "rheogate.v"

@@ -89,7 +89,13 @@ def loading(program):
 
 @pytest.mark.parametrize(
     ("lanes", "updates", "axes", "press", "hold"),
-    [(1, 1, 3, [1, 2], [1]), (2, 1, 3, [1], [1]), (2, 2, 3, [1], [1]), (1, 1, 1, [1, 2], [1]), (2, 2, 1, [1], [1])],
+    [
+        pytest.param(1, 1, 3, [1, 2], [1], marks=pytest.mark.campaign),
+        pytest.param(2, 1, 3, [1], [1], marks=pytest.mark.campaign),
+        (2, 2, 3, [1], [1]),
+        (1, 1, 1, [1, 2], [1]),
+        pytest.param(2, 2, 1, [1], [1], marks=pytest.mark.campaign),
+    ],
 )
 def test_a_pressed_block(lanes, updates, axes, press, hold, rng):
     """Runs of one step and of more, a new phase, the counters; requests are refused while it runs."""

@@ -40,7 +40,7 @@ def runs(scene, service, folder) -> tuple:
     """Return the results that ``run`` writes for a scene on the board and on the simulated circuit."""
     out = [folder / name for name in ("board", "rtl")]
     assert main(["run", str(scene), "--backend", "board", "--port", service.url, "--out", str(out[0])]) == 0
-    assert main(["run", str(scene), "--backend", "rtl", "--lanes", "1", "--out", str(out[1])]) == 0
+    assert main(["run", str(scene), "--backend", "rtl", "--out", str(out[1])]) == 0
     return tuple(dict(np.load(path / "trajectory.npz")) for path in out)
 
 

@@ -34,7 +34,7 @@ def counted(rng, share, commands):
     return [ITEMS.split(answer.payload)[1] for answer in answers], session.retries, line.damaged
 
 
-@pytest.mark.parametrize("share", RATES[:-1])
+@pytest.mark.parametrize("share", RATES[1:3])
 def test_every_command_is_done_exactly_once_and_in_order(share, rng):
     counts, retries, damaged = counted(rng, share, 300)
     assert counts == list(range(1, 301))

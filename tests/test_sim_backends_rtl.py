@@ -20,7 +20,7 @@ from sim.encode.order import ranks
 from sim.encode.program import Program
 from sim.results.cycles import Wavefront
 
-LANES = 1, 2, pytest.param(4, marks=pytest.mark.campaign)  # four are simulated in test_sim_meshes.py as well
+LANES = 2, *(pytest.param(lanes, marks=pytest.mark.campaign) for lanes in (1, 4))
 
 
 @pytest.fixture
