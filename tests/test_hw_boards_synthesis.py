@@ -55,6 +55,7 @@ def test_every_product_that_is_not_narrow_is_one_multiplier():
     assert max(operand.fmt.width for node in multiplications for operand in node.operands) == WIDTH
 
 
+@pytest.mark.campaign
 def test_synthesis_keeps_the_primitives_and_finds_no_others():
     """With the family's own modules the tools infer no multiplier and no block RAM."""
     cells, placed, multiplications = synthesised(replace(SMALL, family="ecp5"), "-run begin:map_ffs")

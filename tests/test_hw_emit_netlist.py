@@ -109,7 +109,7 @@ def test_a_signal_that_is_assigned_at_once_has_its_name_with_any_interpreter(ano
     "make",
     [
         pytest.param(lambda: Core(SMALL), marks=pytest.mark.campaign),
-        lambda: Core(Parameters(lanes=2, updates=2, axes=1, nodes=4, edges=4, materials=2, tables=1)),
+        lambda: Core(Parameters(lanes=1, updates=2, axes=1, nodes=4, edges=4, materials=2, tables=1)),
         lambda: Device(key=b"k" * 8, identity=[1, 2], state=36),
     ],
     ids=["core", "serial", "device"],

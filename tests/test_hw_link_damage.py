@@ -123,9 +123,9 @@ def campaign(seed: int, frames: int) -> Counter:
 
 
 def test_nothing_of_a_damaged_frame_is_applied_and_the_next_good_one_is(seed):
-    seen = campaign(seed, 3000)
+    seen = campaign(seed, 1000)
     print(dict(seen))
-    assert min(seen[kind] for kind in ("cobs_errors", "length_errors", "crc_errors")) > 50
+    assert min(seen[kind] for kind in ("cobs_errors", "length_errors", "crc_errors")) > 20
 
 
 @pytest.mark.campaign

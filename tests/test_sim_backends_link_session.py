@@ -34,11 +34,10 @@ def counted(rng, share, commands):
     return [ITEMS.split(answer.payload)[1] for answer in answers], session.retries, line.damaged
 
 
-@pytest.mark.parametrize("share", RATES[1:3])
-def test_every_command_is_done_exactly_once_and_in_order(share, rng):
-    counts, retries, damaged = counted(rng, share, 300)
+def test_every_command_is_done_exactly_once_and_in_order(rng):
+    counts, retries, damaged = counted(rng, 1e-3, 300)
     assert counts == list(range(1, 301))
-    assert bool(retries) <= bool(damaged) and (share < 1e-3 or damaged)
+    assert retries and damaged
 
 
 @pytest.mark.campaign
