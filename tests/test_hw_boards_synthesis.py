@@ -47,6 +47,7 @@ def synthesised(parameters: Parameters, options: str) -> tuple[Counter, Counter,
     return cells, placed, [node for node in products if not parameters.cost.narrow_product(node)]
 
 
+@pytest.mark.campaign
 def test_every_product_that_is_not_narrow_is_one_multiplier():
     """Synthesis stops after mapping the multipliers, whose number depends on no capacity."""
     cells, _, multiplications = synthesised(SMALL, "-run begin:map_ram")

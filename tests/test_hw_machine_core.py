@@ -92,7 +92,7 @@ def loading(program):
     [
         pytest.param(1, 1, 3, [1, 2], [1], marks=pytest.mark.campaign),
         pytest.param(2, 1, 3, [1], [1], marks=pytest.mark.campaign),
-        (2, 2, 3, [1], [1]),
+        pytest.param(2, 2, 3, [1], [1], marks=pytest.mark.campaign),  # test_hw_machine_routes.py runs it as well
         (1, 1, 1, [1, 2], [1]),
         pytest.param(2, 2, 1, [1], [1], marks=pytest.mark.campaign),
     ],

@@ -114,6 +114,7 @@ def hashes(rows):
     return (mixed ^ mixed >> np.uint64(29)) * np.uint64(0xBF58476D1CE4E5B9)
 
 
+@pytest.mark.campaign
 def test_two_million_edges_are_the_same_bits_with_the_same_faults(bench, seed):
     print(f"seed {seed}")
     stimuli, answers, faults, corners, limits = [], [], Counter(), Counter(), Counter()
