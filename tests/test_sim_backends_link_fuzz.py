@@ -157,7 +157,7 @@ def fuzzed(examples: int, steps: int):
 
 
 def test_the_driver_ends_with_the_right_state_or_a_typed_error():
-    fuzzed(4, 12)
+    fuzzed(2, 12)
 
 
 @pytest.mark.campaign
