@@ -1,7 +1,7 @@
 """Reports of place and route: resources, clock, critical path, names."""
 
 import pytest
-from board_objects import STATISTICS, STEPS, TIMED, reported
+from board_objects import PATH, STATISTICS, STEPS, TIMED, reported
 
 from hw.boards import flow, report
 from hw.families.registry import get_family
@@ -19,6 +19,12 @@ def test_resources_leave_the_frame_out():
 
 def test_the_critical_path_is_from_register_to_register():
     assert report.critical_path(reported(100), ECP5) == STEPS
+
+
+def test_a_path_that_starts_in_a_cell_of_the_tool_has_only_names_of_the_design():
+    first, *others = STEPS
+    path = [("clk-to-q", 0.25, "$PACKER_VCC_NET"), *PATH]
+    assert report.critical_path(reported(100, path), ECP5) == [report.Step(first.name, first.ns + 0.25), *others]
 
 
 @pytest.mark.parametrize(

@@ -40,12 +40,16 @@ def critical_path(report: dict, flow: Flow) -> list[Step]:
         if path["from"].startswith(CLOCKED) and path["to"].startswith(CLOCKED)
     ]
     steps: list[Step] = []
+    unnamed = 0.0  # of the tool's own cells, before the first that has a name in the design
     for part in max(paths, key=lambda path: sum(part["delay"] for part in path)):
         name = signal_name(part["to"]["cell"], flow)
         if steps and name in ("", steps[-1].name):  # the tool's own cells have no name and belong to the step before
             steps[-1].ns += part["delay"]
+        elif name:
+            steps.append(Step(name, unnamed + part["delay"]))
+            unnamed = 0.0
         else:
-            steps.append(Step(name, part["delay"]))
+            unnamed += part["delay"]
     return [Step(step.name, round(step.ns, 2)) for step in steps]
 
 
