@@ -92,7 +92,8 @@ def loading(program):
     [
         pytest.param(1, 1, 3, [1, 2], [1], marks=pytest.mark.campaign),
         pytest.param(2, 1, 3, [1], [1], marks=pytest.mark.campaign),
-        pytest.param(2, 2, 3, [1], [1], marks=pytest.mark.campaign),  # test_hw_machine_routes.py runs it as well
+        # test_hw_machine_routes.py runs this one with longer routes
+        pytest.param(2, 2, 3, [1], [1], marks=pytest.mark.campaign),
         (1, 1, 1, [1, 2], [1]),
         pytest.param(2, 2, 1, [1], [1], marks=pytest.mark.campaign),
     ],

@@ -69,7 +69,7 @@ class Backend(ABC):
         """Return the names of its settings."""
         return {setting.name for setting in fields(cls)}
 
-    def check(self) -> None:  # noqa: B027
+    def check(self) -> None:  # noqa: B027 (most backends have nothing to check)
         """Raise `golden.support.errors.InputError` for settings that can't be used, before anything is run or
         written."""
 
@@ -78,7 +78,7 @@ class Backend(ABC):
         can't be reached."""
         return self
 
-    def close(self) -> None:  # noqa: B027
+    def close(self) -> None:  # noqa: B027 (most backends hold no device)
         """Let go of the device."""
 
     @abstractmethod
