@@ -35,6 +35,7 @@ def test_a_path_that_starts_in_a_cell_of_the_tool_has_only_names_of_the_design()
         ("core.sequencer.summed_TRELLIS_FF_Q_11_DI_LUT4_Z_C_CCU2C_S1_S0_CCU2C_S0", "sequencer.summed"),
         ("core.lane0.ram.words.0.0_DOB10", "lane0.ram.words"),
         ("core.lane0.ram.words.0.0", "lane0.ram.words"),
+        ("core.updater0.stage__double_ring7.words[2]_TRELLIS_FF_Q_1", "updater0.stage__double_ring7.words"),
         ("core.m3.product_MULT18X18D_P0", "m3.product"),
         ("core.lane0.t12_next", "lane0.t12_next"),
         ("gathered_TRELLIS_FF_Q_3", "gathered"),

@@ -16,8 +16,9 @@ class Step(Struct, forbid_unknown_fields=True):
     ns: float
 
 
-# The tools append to a part of a cell "$..." and to a memory its row, column and pin
-MEMORY_SITE = re.compile(r"(?:\.\d+)+(?:_[A-Z]+\d*(?:_\d+)?)?$")
+# The tools append to a part of a cell "$..." and to a memory its row, column and pin, or the index of
+# a word where the memory is made of registers
+MEMORY_SITE = re.compile(r"(?:(?:\.\d+)+(?:_[A-Z]+\d*(?:_\d+)?)?|\[\d+\])$")
 CLOCKED = "posedge "
 
 
